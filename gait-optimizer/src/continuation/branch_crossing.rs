@@ -1,21 +1,21 @@
-//! Two branches side by side: where they become one, and where one overtakes the other.
+//! Comparison of two branches: points at which they merge, and points at which one overtakes the other.
 
 use super::branch_point::BranchPoint;
 use super::follow::{Family, Track, smallest, stop};
 use super::{ContinuationProblem, Event, EventKind};
 
-/// Gaits are the same if their curves are this close \[rad\] (they are compared as polygons of 96 points) and their gains agree
-/// to this share.
+/// Largest distance of the curves of equal gaits \[rad\] (as polygons of 96 points); the next constant is the relative difference of
+/// their gains.
 const SAME_PLACE: f64 = 5e-3;
 const SAME_GAIN: f64 = 1e-7;
-/// How often the place of a meeting is halved.
+/// Largest number of bisections for the place of a crossing.
 const MOST_HALVINGS: usize = 24;
 
 fn same(a: &BranchPoint, b: &BranchPoint) -> bool {
     (a.gain() - b.gain()).abs() <= SAME_GAIN * a.gain().max(b.gain()) && a.apart(b) < SAME_PLACE
 }
 
-/// Events between every two branches.
+/// Events between all pairs of branches.
 pub(super) fn meetings<F: Family>(
     problem: &ContinuationProblem,
     family: &F,
@@ -36,7 +36,7 @@ fn meeting<F: Family>(
     [(first, one), (second, two)]: [(usize, &Track); 2],
     events: &mut Vec<Event>,
 ) {
-    // After a jump two points share a value: the later one counts.
+    // After a jump two points have the same value; the later one is used.
     let at = |track: &Track, value: f64| {
         let found = track.kept.iter().rev();
         let mut found = found.filter(|kept| kept.value.to_bits() == value.to_bits());
@@ -84,7 +84,8 @@ fn meeting<F: Family>(
     }
 }
 
-/// Where a property of two gaits that `last` has is lost before `beyond`, with how sure that is.
+/// Bisects for the parameter at which a property of two gaits that `last` has is lost before `beyond`, and returns it with its
+/// uncertainty.
 fn halved<F: Family>(
     problem: &ContinuationProblem,
     family: &F,

@@ -1,4 +1,4 @@
-//! A gait on the way, and how far it is from another one.
+//! Point of a branch, and the distance of two points.
 
 use swimmer_files::{ArcKind, Objective};
 
@@ -6,18 +6,18 @@ use crate::atlas::distinct::{Outline, Symmetries};
 use crate::extremal::Extremal;
 use crate::optimal_gait::OptimalGait;
 
-/// In one step a curve may move this far \[rad\], and the logarithm of its gain change by this much.
+/// Largest change of a curve in one step \[rad\]; the next constant is that of the logarithm of its gain.
 const MOST_MOVE: f64 = 0.15;
 const MOST_CHANGE: f64 = 0.15;
-/// How many numbers of a gait it is measured with.
+/// Number of figures by which a gait is characterised.
 pub(super) const FIGURES: usize = 4;
 
-/// A gait at a value of the parameter.
+/// Gait at a value of the parameter.
 #[derive(Debug, Clone)]
 pub(super) struct BranchPoint {
     pub(super) value: f64,
     pub(super) gait: OptimalGait,
-    /// Its arcs, from which the next one is shot, where it is one of most efficiency.
+    /// Arcs of an efficiency gait, the initial guess of the next one.
     pub(super) extremal: Option<Extremal>,
     outline: Outline,
 }
@@ -36,12 +36,12 @@ impl BranchPoint {
         self.gait.arcs.iter().map(|arc| arc.kind).collect()
     }
 
-    /// Whether it is an optimum, at least among gaits with its symmetries.
+    /// Returns `true` if it is an optimum, at least among gaits with its symmetries.
     pub(super) fn holds(&self) -> bool {
         self.gait.certificate.holds_among_symmetric()
     }
 
-    /// What the gait is optimal for.
+    /// Value of the objective.
     pub(super) fn gain(&self) -> f64 {
         match self.gait.objective {
             Objective::Efficiency => self.gait.efficiency,
@@ -57,14 +57,14 @@ impl BranchPoint {
         self.outline.apart(&other.outline, Symmetries::default())
     }
 
-    /// How far two gaits are apart, over what a step may change.
+    /// Distance of two gaits relative to the largest change per step.
     pub(super) fn off(&self, other: &Self) -> f64 {
         let change = (self.gain() / other.gain()).ln().abs() / MOST_CHANGE;
         let off = change.max(self.apart(other) / MOST_MOVE);
         if off.is_finite() { off } else { f64::INFINITY }
     }
 
-    /// Numbers that change smoothly with the gait.
+    /// Figures that change smoothly with the gait.
     pub(super) fn figures(&self) -> [f64; FIGURES] {
         let gait = &self.gait;
         [
@@ -77,7 +77,7 @@ impl BranchPoint {
     }
 }
 
-/// The slope of a straight line by least squares; none below three points.
+/// Slope of the least-squares line. Returns `None` for fewer than three points.
 pub(super) fn slope(points: &[[f64; 2]]) -> Option<f64> {
     let count = points.len() as f64;
     let mean = |axis: fn(&[f64; 2]) -> f64| points.iter().map(axis).sum::<f64>() / count;

@@ -1,4 +1,4 @@
-//! Efficiency gaits: the next one by shooting from the last one's arcs.
+//! Continuation of efficiency gaits: each gait by shooting from the arcs of the previous one.
 
 use swimmer_model::{Gait, Model};
 
@@ -15,7 +15,7 @@ pub(super) struct Efficiency<'a> {
     pub(super) problem: &'a ContinuationProblem,
 }
 
-/// The secant through two gaits is not followed further than this many times their distance.
+/// Largest extrapolation along the secant through two gaits, over their distance.
 const FARTHEST: f64 = 2.0;
 
 impl Efficiency<'_> {
@@ -112,7 +112,7 @@ impl Family for Efficiency<'_> {
         if here.gait.symmetric {
             return Err(reason);
         }
-        // A closed chain's first shape is held on a line, which may not fit any more.
+        // The first shape of a closed chain is held on a line, which may no longer be suitable.
         let curve = here.gait.gait().map_err(|error| error.to_string())?;
         self.polished(value, &curve, false).map_err(|_| reason)
     }

@@ -1,61 +1,61 @@
-//! Why nothing can be followed, and what of a problem shows it at once.
+//! Errors of continuations, and the validation of their problems.
 
 use swimmer_files::Objective;
 use swimmer_model::InvalidSwimmer;
 
 use super::{ContinuationProblem, Parameter, Start};
 
-/// Why nothing can be followed.
+/// Failure of a continuation.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ContinuationError {
     /// The swimmer's parameters are out of range.
     #[error("cannot follow gaits of this swimmer: {0}")]
     Swimmer(#[from] InvalidSwimmer),
-    /// Another objective, or a start of another one.
+    /// Unsupported objective, or a start with another objective.
     #[error(
         "gaits can be followed for the objectives displacement and efficiency, with starts of the same objective, not for \
          `{objective}` from here"
     )]
     Objective {
-        /// Asked for.
+        /// Requested objective.
         objective: Objective,
     },
-    /// The range makes no sense.
+    /// The range of the parameter is invalid.
     #[error("cannot follow {parameter} from {from} to {to}: {problem}")]
     Range {
         /// The parameter.
         parameter: Parameter,
-        /// Asked for.
+        /// Requested start.
         from: f64,
-        /// Asked for.
+        /// Requested end.
         to: f64,
-        /// What is wrong.
+        /// Requirement that is violated.
         problem: &'static str,
     },
-    /// A size makes no sense.
+    /// A number of steps or starts is invalid.
     #[error("{steps} steps, {starts} branches: give 1 to 10000 steps and 1 to 16 branches")]
     Size {
-        /// Asked for.
+        /// Requested number of steps.
         steps: usize,
-        /// Asked for.
+        /// Requested number of starts.
         starts: usize,
     },
-    /// There is no gait to begin with.
+    /// There is no initial gait.
     #[error("no gait to follow from {parameter} = {from} (branch {branch}): {reason}")]
     NoStart {
         /// The parameter.
         parameter: Parameter,
         /// Its first value.
         from: f64,
-        /// Which start.
+        /// Index of the start.
         branch: usize,
-        /// Why.
+        /// Reason.
         reason: String,
     },
 }
 
 impl ContinuationError {
-    /// Whether the problem itself makes no sense, rather than having no gait to begin with.
+    /// Returns `true` if the problem is invalid, and `false` if a valid problem has no initial gait.
     pub fn is_bad_input(&self) -> bool {
         !matches!(self, Self::NoStart { .. })
     }

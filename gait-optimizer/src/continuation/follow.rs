@@ -1,4 +1,4 @@
-//! Step control, and the search for the places of events.
+//! Predictor–corrector continuation of a branch: step control and location of events.
 
 use std::ops::Range;
 
@@ -7,32 +7,32 @@ use crate::parallel::Watch;
 
 use super::{ContinuationProblem, Event, EventKind, Fold, OtherSide, Start};
 
-/// A step, and the place of an event, is not cut smaller than this share of the whole way.
+/// Smallest step, and accuracy of an event, as a share of the whole range.
 const SMALLEST: f64 = 5e-7;
-/// At most so many gaits are worked out for one branch, beyond those that the steps ask for.
+/// Largest number of gaits per branch beyond those of the regular steps.
 const MOST_GAITS: usize = 2000;
-/// Below this share of the first gait's gain a branch has faded.
+/// Share of the first gait's gain below which a branch counts as ended.
 const FADED: f64 = 1e-4;
-/// Arcs may change so often in one step.
+/// Largest number of changes of the arcs in one step.
 const MOST_CHANGES: usize = 8;
-/// A gait that changes with a power of the distance to its end between these turns back there.
+/// Exponents of the change with the distance to the end of the branch that indicate a fold (1/2 in theory).
 const TURNS_BACK: Range<f64> = 0.42..0.6;
-/// That power is measured over these distances, as shares of the whole way.
+/// Distances over which the exponent is fitted, as shares of the whole range.
 const POWER_OVER: Range<f64> = 1e-5..1e-2;
-/// How often the end of a gap is halved.
+/// Largest number of bisections for the end of a gap.
 const MOST_HALVINGS: usize = 16;
-/// A fold's other extremal is looked for at this many points before it.
+/// Number of points before a fold at which its other extremal is searched.
 const MOST_BEFORE: usize = 12;
 
-/// How the gaits of one objective are found.
+/// Solver for the gaits of one objective.
 pub(super) trait Family {
-    /// Whether a branch that ends goes on with the nearest other gait.
+    /// `true` if a branch that ends continues with the nearest other gait.
     const JUMPS: bool;
 
-    /// The first gait.
+    /// First gait.
     fn start(&self, start: &Start) -> Result<BranchPoint, String>;
 
-    /// A gait near the last one (and the one before it), at another value.
+    /// Gait at another value, near the last one and the one before it.
     fn next(
         &self,
         value: f64,
@@ -40,41 +40,41 @@ pub(super) trait Family {
         before: Option<&BranchPoint>,
     ) -> Result<BranchPoint, String>;
 
-    /// The optimum nearest to a gait that is none any more, where one shall be followed instead.
+    /// Optimum nearest to a gait that is no longer optimal, if the continuation changes to it.
     fn optimum(&self, _value: f64, _last: &BranchPoint) -> Option<BranchPoint> {
         None
     }
 
-    /// The extremal that a branch meets where it ends.
+    /// Other extremal at the end of a branch.
     fn other_side(&self, _before: &BranchPoint, _last: &BranchPoint) -> Option<OtherSide> {
         None
     }
 }
 
-/// A branch.
+/// Branch with its events.
 pub(super) struct Track {
     pub(super) kept: Vec<BranchPoint>,
     pub(super) events: Vec<Event>,
 }
 
-/// The values that all branches stop at.
+/// Parameter value of stop `number`, at which all branches have a point.
 pub(super) fn stop(problem: &ContinuationProblem, number: usize) -> f64 {
     let share = number as f64 / problem.steps as f64;
     problem.from + share * (problem.to - problem.from)
 }
 
-/// The finest step.
+/// Smallest step.
 pub(super) fn smallest(problem: &ContinuationProblem) -> f64 {
     SMALLEST * (problem.to - problem.from).abs()
 }
 
-/// Why a step failed.
+/// Failure of a step.
 enum Refused {
     Another(Box<BranchPoint>),
     Nothing(String),
 }
 
-/// A gait that may be the next one, and how far off it is over what a step may change.
+/// Candidate for the next gait, and its distance relative to the largest change per step.
 type Tried = Result<(BranchPoint, f64), Refused>;
 
 /// Follows one branch.
@@ -107,9 +107,9 @@ struct Walk<'a, F: Family> {
     family: &'a F,
     branch: usize,
     floor: f64,
-    /// How many gaits may still be worked out.
+    /// Remaining number of gaits.
     gaits: usize,
-    /// First point since the last jump.
+    /// Index of the first point after the last jump.
     since: usize,
     track: Track,
     here: BranchPoint,
@@ -124,7 +124,7 @@ impl<F: Family> Walk<'_, F> {
         for number in 1..=self.problem.steps {
             watch((number as f64 - 1.0) / self.problem.steps as f64);
             let target = stop(self.problem, number);
-            // A landing may lie beyond.
+            // A jump may have passed the target.
             while (target - self.here.value) * whole > 0.0 {
                 let left = target - self.here.value;
                 let value = if step.abs() >= left.abs() * 0.999_999 {
@@ -184,7 +184,7 @@ impl<F: Family> Walk<'_, F> {
         }
     }
 
-    /// Takes a gait for the next one; false where the branch ends in it.
+    /// Accepts a gait as the next point. Returns `false` if the branch ends there.
     fn accepts(&mut self, found: BranchPoint) -> bool {
         let mut from = self.here.clone();
         if !found.holds() {
@@ -219,7 +219,7 @@ impl<F: Family> Walk<'_, F> {
         !faded
     }
 
-    /// Two gaits close by, of which the first still has a property of `from` and the second has not.
+    /// Bisects for two neighbouring gaits, of which only the first has a property of `from`.
     fn parted(
         &mut self,
         from: &BranchPoint,
@@ -248,7 +248,7 @@ impl<F: Family> Walk<'_, F> {
         (last, next)
     }
 
-    /// No step goes on from here; true where another gait does.
+    /// Handles a failed step. Returns `true` if the branch continues with another gait.
     fn stops(&mut self, refused: Refused, step: f64) -> bool {
         let exponent = self.exponent();
         let other = self.other_side();
@@ -278,7 +278,7 @@ impl<F: Family> Walk<'_, F> {
         }
     }
 
-    /// Goes on from another gait that is further off than a step may lead.
+    /// Continues from a gait beyond the largest change per step.
     fn lands(&mut self, found: BranchPoint) {
         let (apart, exponent) = (self.here.apart(&found), self.exponent());
         let (value, within) = between(self.here.value, found.value);
@@ -293,7 +293,7 @@ impl<F: Family> Walk<'_, F> {
         self.before = None;
     }
 
-    /// Goes on with the nearest optimum at the next stop that has one; false where none has, or the family does not jump.
+    /// Continues with the nearest optimum at the next stop that has one. Returns `false` if there is none or the family does not jump.
     fn resumes(&mut self) -> bool {
         if !F::JUMPS {
             return false;
@@ -313,7 +313,7 @@ impl<F: Family> Walk<'_, F> {
         false
     }
 
-    /// The end of a gap in which there is no optimum, nearest to here.
+    /// Nearest end of a gap without an optimum.
     fn nearest(&self, found: BranchPoint) -> BranchPoint {
         let (mut none, mut nearest) = (self.here.value, found);
         for _ in 0..MOST_HALVINGS {
@@ -329,7 +329,7 @@ impl<F: Family> Walk<'_, F> {
         nearest
     }
 
-    /// An event: the arcs are others.
+    /// Records a change of the arcs.
     fn changes(&mut self, last: &BranchPoint, next: &BranchPoint) {
         let (value, within) = between(last.value, next.value);
         let kind = EventKind::Structure {
@@ -339,7 +339,7 @@ impl<F: Family> Walk<'_, F> {
         self.event(value, within, kind);
     }
 
-    /// The other extremal of a fold, where it can: from far enough to be told from an optimum.
+    /// Other extremal of a fold, searched far enough from the fold to be distinguished from the optimum.
     fn other_side(&self) -> Option<OtherSide> {
         let points = self.track.kept.get(self.since..).unwrap_or_default();
         let mut nearest = None;
@@ -360,7 +360,7 @@ impl<F: Family> Walk<'_, F> {
         self.event(value, within, EventKind::Ended { reason, exponent });
     }
 
-    /// The power of the distance to the last point that the gait changed with before it, over points with the same arcs.
+    /// Exponent of the gait's change with the distance to the last point, over points with the same arcs.
     fn exponent(&self) -> Option<f64> {
         let way = (self.problem.to - self.problem.from).abs();
         let points = self.track.kept.get(self.since..).unwrap_or_default();
@@ -381,7 +381,7 @@ impl<F: Family> Walk<'_, F> {
                 .collect();
             slope(&logs?)
         });
-        // A figure that the turn does not touch to first order changes evenly.
+        // A figure that the fold does not affect to first order changes linearly.
         powers.min_by(f64::total_cmp)
     }
 }

@@ -1,14 +1,14 @@
-//! What changes along a branch.
+//! Parameter of a continuation.
 
 use std::fmt;
 
 use swimmer_files::Bounds;
 use swimmer_model::{Links, Swimmer};
 
-/// What changes along a branch.
+/// Parameter of a continuation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Parameter {
-    /// No joint may turn further than this \[rad\].
+    /// Bound on the joint angles \[rad\].
     MaxAngle,
     /// χ, the ratio of the resistance coefficients.
     Chi,
@@ -19,7 +19,7 @@ pub enum Parameter {
 }
 
 impl Parameter {
-    /// The word on the command line and in JSON.
+    /// Name on the command line and in JSON.
     pub fn word(self) -> &'static str {
         match self {
             Self::MaxAngle => "max-angle",
@@ -29,7 +29,7 @@ impl Parameter {
         }
     }
 
-    /// The swimmer with this value of the parameter.
+    /// Returns the swimmer with this value of the parameter.
     #[must_use]
     pub fn swimmer(self, swimmer: &Swimmer<f64>, value: f64) -> Swimmer<f64> {
         match self {
@@ -57,7 +57,7 @@ impl Parameter {
         }
     }
 
-    /// The bounds with this value of the parameter.
+    /// Returns the bounds with this value of the parameter.
     #[must_use]
     pub fn bounds(self, bounds: &Bounds, value: f64) -> Bounds {
         match self {

@@ -1,8 +1,8 @@
-//! Displacement: the ensemble maximum principle on arcs.
+//! Robust displacement gaits: Pontryagin's principle for an ensemble of swimmers, on arcs.
 //!
 //! For weights wₖ of the members the first variation of Σ wₖ Xₖ under a push of the curve is ∮ h̄ ds with the weighted height
 //! h̄ = Σ wₖ μₖ·Fₖ, each member with its own pose, momentum and curvature. So free arcs satisfy h̄ = 0, and along an upper
-//! bound h̄ ≥ 0 (a push outwards would gain, were it allowed).
+//! bound h̄ ≥ 0 (sign of the KKT multiplier).
 //!
 //! A free arc is a polynomial through Chebyshev–Lobatto nodes. Each node moves along its own direction, which at the arc's
 //! ends lies along what the end must stay on (a diagonal or a bound) and turns evenly between; so there are as many unknowns
@@ -23,32 +23,32 @@ use crate::member::Member;
 use crate::momentum::Height;
 use crate::optimal_gait::OptimalGait;
 
-/// Degree of the polynomial of an arc: of one of several, and of one that is the whole quarter.
+/// Degree of the polynomial of an arc: one of several, or the whole quarter.
 const DEGREES: [usize; 2] = [28, 44];
-/// Heights, over L and per square radian, that count as zero: what Newton's method reaches.
+/// Largest height, over L and per square radian, that counts as zero.
 pub(super) const FLAT: f64 = 1e-11;
 
-/// An arc as the design sees it.
+/// Arc of the design.
 #[derive(Debug, Clone)]
 struct Leg {
     kind: ArcKind,
-    /// Nodes of a free arc, and the direction in which each moves.
+    /// Nodes of a free arc, and their directions of motion.
     nodes: Vec<(Vector2<f64>, Vector2<f64>)>,
-    /// Ends of a straight one along a bound; neighbouring free arcs may move them.
+    /// Ends of a straight arc along a bound; neighbouring free arcs may move them.
     ends: [Vector2<f64>; 2],
 }
 
-/// Gaits with the arcs of a nominal optimum.
+/// Family of gaits with the arcs of a nominal optimum.
 #[derive(Debug)]
 pub(super) struct Arcs {
     nodes: Nodes,
     legs: Vec<Leg>,
-    /// 1 or −1: X is maximised or minimised.
+    /// 1 to maximise X, −1 to minimise it.
     sign: f64,
 }
 
 impl Arcs {
-    /// The family around a gait.
+    /// Creates the family around a gait.
     pub(super) fn around(gait: &OptimalGait, sign: f64) -> Result<Self, RobustError> {
         let [several, single] = DEGREES;
         let nodes = Nodes::new(if gait.arcs.len() > 1 { several } else { single });
@@ -79,7 +79,7 @@ impl Arcs {
         Ok(Self { nodes, legs, sign })
     }
 
-    /// The arcs moved by `x`, a number for each free node.
+    /// Returns the arcs displaced by `x`, one number per free node.
     pub(super) fn curves(&self, x: &DVector<f64>) -> Vec<ArcCurve> {
         let mut by = x.iter();
         let moved = |leg: &Leg| {
@@ -106,7 +106,7 @@ impl Arcs {
             .collect()
     }
 
-    /// Weighted heights of all nodes, with their gradients.
+    /// Weighted heights at all nodes, with their gradients.
     fn heights(&self, arcs: &[ArcCurve], members: &[(Member, f64)]) -> Vec<Height> {
         let shapes: Vec<_> = arcs.iter().flat_map(|arc| &arc.phi).collect();
         let nothing = Height {
@@ -125,7 +125,7 @@ impl Arcs {
         heights
     }
 
-    /// The same of each leg.
+    /// Splits node values by leg.
     fn of_legs<'a>(
         &'a self,
         heights: &'a [Height],
@@ -142,7 +142,7 @@ impl Family for Arcs {
         cycle::of_arcs(model, &self.nodes, kinds, &self.curves(x))
     }
 
-    /// h̄ vanishes on free arcs and falls outwards there (generalised Legendre–Clebsch), and pushes against bounds.
+    /// Conditions: h̄ vanishes on free arcs and decreases outwards there (generalised Legendre–Clebsch), and pushes against bounds.
     fn conditions(&self, x: &DVector<f64>, members: &[(Member, f64)]) -> Vec<Check> {
         let arcs = self.curves(x);
         let heights = self.heights(&arcs, members);
@@ -206,10 +206,10 @@ impl Design for Arcs {
     }
 }
 
-/// Longest step of a node in one iteration \[rad\].
+/// Largest step of a node in one iteration \[rad\].
 const MOST: f64 = 0.1;
 
-/// A free arc between two fractions of the period, whose ends move along these directions.
+/// Free arc between two fractions of the period, whose ends move along these directions.
 fn free(
     nodes: &Nodes,
     curve: &impl Gait<f64>,

@@ -1,5 +1,5 @@
-//! What a robust gait's certificate holds beside the conditions of its family: bounds, the curve itself, and every value swum again
-//! by the model's own integration.
+//! Conditions of a robust gait's certificate that do not depend on its family: bounds, the curve itself, and every value by the
+//! model's own integration.
 
 use swimmer_files::Bounds;
 use swimmer_model::Links;
@@ -12,7 +12,7 @@ use crate::cycle::Cycle;
 use crate::member::Member;
 use crate::region::Region;
 
-/// Bounds kept, a simple curve that turns once.
+/// Conditions that the bounds hold and that the curve is simple and turns once.
 pub(super) fn of_curve(cycle: &Cycle, bounds: &Bounds, links: &Links<f64>) -> Vec<Check> {
     let overstepped = overstepped(cycle, bounds, links);
     let mut checks = Vec::new();
@@ -23,7 +23,7 @@ pub(super) fn of_curve(cycle: &Cycle, bounds: &Bounds, links: &Links<f64>) -> Ve
     checks
 }
 
-/// By how much the bounds that hold all round are overstepped \[rad\]; the families have none of the others.
+/// Largest violation of the bounds that hold in all quarters \[rad\]; the families do not support the others.
 pub(super) fn overstepped(cycle: &Cycle, bounds: &Bounds, links: &Links<f64>) -> f64 {
     let full = Bounds {
         min_angle: None,
@@ -35,8 +35,8 @@ pub(super) fn overstepped(cycle: &Cycle, bounds: &Bounds, links: &Links<f64>) ->
     by.fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// All values swum again by the model's own integration, and looked for again among all swimmers; and who holds the worst case is as
-/// badly off as the worst.
+/// Conditions that all values agree with the model's own integration and with a new search for the worst case, and that the active
+/// members have the value of the worst case.
 pub(super) fn swum_again<D: Design>(
     ensemble: &Ensemble<'_>,
     design: &D,

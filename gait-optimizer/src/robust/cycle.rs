@@ -1,4 +1,4 @@
-//! From the design's quarter to the sampled cycle.
+//! Conversion of the design's quarter to a sampled cycle.
 
 use nalgebra::Vector2;
 use swimmer_files::{ArcKind, GaitArc, GaitFile};
@@ -8,14 +8,14 @@ use super::nodes::Nodes;
 use super::quarter::ArcCurve;
 use crate::cycle::{Cycle, Samples, power};
 
-/// Samples of an arc.
+/// Number of samples per arc.
 const SAMPLES: u32 = 128;
-/// Samples of a cycle of a series.
+/// Number of samples of the cycle of a series.
 const CYCLE: usize = 1024;
-/// Directions this close in angle \[rad\] make no corner.
+/// Change of direction \[rad\] below which there is no corner.
 const SMOOTH: f64 = 1e-6;
 
-/// The cycle of a displacement gait with these arcs, at constant power of the nominal swimmer.
+/// Cycle of a displacement gait with these arcs, at constant power of the nominal swimmer.
 pub(super) fn of_arcs(
     model: &Model<f64>,
     nodes: &Nodes,
@@ -48,7 +48,7 @@ pub(super) fn of_arcs(
     ])
 }
 
-/// The cycle of a series, timed as it is.
+/// Cycle of a series with its own timing.
 pub(super) fn of_series(gait: &SymmetricFourier<Vec<[f64; 2]>>) -> Cycle {
     let GaitFile { u, phi, .. } = GaitFile::sampled(gait, CYCLE);
     Cycle {

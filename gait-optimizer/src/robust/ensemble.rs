@@ -1,4 +1,4 @@
-//! All swimmers that are left open: what a gait brings with them, and the gait that is best for their mean or their worst.
+//! Ensemble of the possible swimmers: values of a gait over it, and the gait that is best for its mean.
 
 use swimmer_files::Bounds;
 use swimmer_model::{InvalidSwimmer, Swimmer};
@@ -8,18 +8,18 @@ use super::uncertainty::Uncertainty;
 use super::{Over, RobustError, Values};
 use crate::member::Member;
 
-/// All swimmers of a problem.
+/// Ensemble of swimmers of a problem.
 pub(super) struct Ensemble<'a> {
     swimmer: &'a Swimmer<f64>,
     uncertainty: &'a Uncertainty,
     pub(super) nominal: Member,
-    /// Where the search for the worst case begins.
+    /// Grid from which the search for the worst case starts.
     pub(super) grid: Vec<([f64; 3], Member)>,
-    /// With their weights in the mean.
+    /// Members with their weights in the mean.
     pub(super) normal: Vec<(Member, f64)>,
 }
 
-/// The worst case of a gait.
+/// Worst case of a gait.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lowest {
     pub(super) value: f64,
@@ -27,7 +27,7 @@ pub(super) struct Lowest {
     pub(super) member: Member,
 }
 
-/// A gait found, and the members that its first-order condition weighs: for the worst case those that hold it.
+/// Solution, with the members that its first-order condition weights: for the worst case, the active ones.
 pub(super) struct Found<P> {
     pub(super) over: Over,
     pub(super) point: P,
@@ -35,7 +35,7 @@ pub(super) struct Found<P> {
 }
 
 impl<P> Found<P> {
-    /// Who holds the worst case; nobody holds a mean.
+    /// Active members of the worst case; empty for a mean.
     pub(super) fn holders(&self) -> &[(Member, f64)] {
         match self.over {
             Over::Worst => &self.weighted,
@@ -44,13 +44,13 @@ impl<P> Found<P> {
     }
 }
 
-/// Of the grid, so many of the lowest are gone downhill from.
+/// Number of the lowest grid points from which the minimum is searched.
 const DESCENTS: usize = 2;
-/// Shares of the grid's spacing down to which the worst case is known: its value is off by the square of it.
+/// Accuracy of the worst case as a share of the grid spacing; the error of its value is quadratic in it.
 const FINEST: f64 = 1e-6;
-/// A worst case that moved by less, in half widths, is still the same.
+/// Distance in half widths below which two worst cases are the same one.
 const SAME: f64 = 0.5;
-/// Smallest step along the weights.
+/// Smallest step of the homotopy in the weights.
 const SMALLEST_STEP: f64 = 0.05;
 
 impl<'a> Ensemble<'a> {
@@ -74,7 +74,7 @@ impl<'a> Ensemble<'a> {
         })
     }
 
-    /// The least value over all that is left open; none where no value is a number.
+    /// Least value over the ensemble. Returns `None` if every value is NaN.
     pub(super) fn lowest(&self, value: impl Fn(&Member) -> f64) -> Option<Lowest> {
         let seen = self.grid.iter().map(|&(place, member)| Lowest {
             value: value(&member),
@@ -88,13 +88,13 @@ impl<'a> Ensemble<'a> {
         ends.min_by(|a, b| a.value.total_cmp(&b.value))
     }
 
-    /// Coordinate by coordinate, with ever smaller steps.
+    /// Coordinate descent with decreasing steps.
     fn downhill(&self, mut here: Lowest, value: &impl Fn(&Member) -> f64) -> Lowest {
         let axes = self.uncertainty.axes();
         let moved = |mut place: [f64; 3], index: usize, share: f64| {
             let (axis, before) = (axes[index], place[index]);
             place[index] = axis.within(before + share * axis.half_step());
-            // Not where it is already at the end, or nothing is open.
+            // No step beyond the end of an axis, or along an axis without extent.
             let moves = (place[index] - before).abs() > 0.0;
             let member = self.uncertainty.at(self.swimmer, place).ok();
             let member = member.filter(|_| moves)?;
@@ -120,13 +120,13 @@ impl<'a> Ensemble<'a> {
         here
     }
 
-    /// Whether two worst cases are one that the gait moved along.
+    /// Returns `true` if two worst cases are the same one, displaced by a change of the gait.
     pub(super) fn is_same(&self, one: &Lowest, other: &Lowest) -> bool {
         let [one, other] = [one, other].map(|lowest| self.uncertainty.half_widths(lowest.place));
         one.iter().zip(&other).all(|(a, b)| (a - b).abs() < SAME)
     }
 
-    /// The gait that is best for a weighted mean, near `start`; where it is too far from there, along the weights from the nominal
+    /// Gait that is best for a weighted mean, near `start`. If that is too far away, follows a homotopy in the weights from the nominal
     /// optimum.
     pub(super) fn solve<D: Design>(
         &self,
@@ -161,12 +161,12 @@ impl<'a> Ensemble<'a> {
         Ok(here)
     }
 
-    /// What a gait brings.
+    /// Values of a gait over the ensemble.
     pub(super) fn values<D: Design>(&self, design: &D, point: &D::Point) -> Values {
         self.brings(|member| design.value(point, member), design.unit())
     }
 
-    /// The same of any value in this unit.
+    /// Values of any function of the members, in this unit.
     pub(super) fn brings(&self, value: impl Fn(&Member) -> f64, unit: f64) -> Values {
         let mean = self.normal.iter();
         let mean: f64 = mean.map(|(member, weight)| value(member) * weight).sum();
@@ -177,13 +177,13 @@ impl<'a> Ensemble<'a> {
         }
     }
 
-    /// The swimmers of the grid, which reaches to the border of all that is left open.
+    /// Swimmers of the grid, which extends to the boundary of the ensemble.
     pub(super) fn on_grid(&self) -> impl Iterator<Item = &Member> {
         self.grid.iter().map(|(_, member)| member)
     }
 
-    /// Whether another branch of optima than the nominal one holds a gait that was found from it: it is better for the estimates
-    /// themselves, or what is best for them near it is another gait than the nominal optimum.
+    /// Returns `true` if a gait is not on the branch of the nominal optimum: it is better for the estimates themselves, or the optimum
+    /// for the estimates near it is another gait.
     pub(super) fn is_off_branch<D: Design>(&self, design: &D, point: &D::Point) -> bool {
         let value = |point: &D::Point| design.value(point, &self.nominal);
         let nominal = value(&design.start());

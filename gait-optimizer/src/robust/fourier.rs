@@ -1,8 +1,8 @@
-//! Efficiency: doubly symmetric Fourier gaits of order N, timed as parametrised.
+//! Robust efficiency gaits: doubly symmetric Fourier series of order N with their own timing.
 //!
-//! One gait is played to all members, so all share its timing: ξₖ = c_t L Xₖ² / Eₖ with Eₖ = ∫ Φ′ᵀWₖΦ′ du. (For a single
-//! member the best timing is constant power, which the series approaches as N grows.) That is the objective of the efficiency
-//! search, exact derivatives and all.
+//! All members play the same gait with the same timing: ξₖ = c_t L Xₖ² / Eₖ with Eₖ = ∫ Φ′ᵀWₖΦ′ du. (For a single member the best
+//! timing is constant power, which the series approaches as N grows.) The objective and its exact derivatives are those of the
+//! efficiency search.
 
 use nalgebra::{DMatrix, DVector};
 use swimmer_model::{Model, Stroke, SymmetricFourier};
@@ -14,17 +14,17 @@ use crate::cycle::Cycle;
 use crate::efficiency::{Branch, Expansion, Objective, Value, climb, starts};
 use crate::member::Member;
 
-/// A step that promises to gain less than this in ln ξ̄ is not worth it: then the slope is rounding.
+/// Predicted gain in ln ξ̄ at which the iteration has converged to rounding.
 const LEAST_GAIN: f64 = 1e-20;
 
-/// Fourier gaits of an order, around a start; a gait is its coefficients (A₁, B₁, A₂, B₂, …).
+/// Family of Fourier gaits of one order around a start; a gait is its coefficients (A₁, B₁, A₂, B₂, …).
 #[derive(Debug)]
 pub(super) struct FourierFamily {
     start: DVector<f64>,
 }
 
 impl FourierFamily {
-    /// The family of this order around the nominal optimum of a branch, found from circles with no other guess.
+    /// Creates the family of this order around the nominal optimum of a branch, which is found from circles.
     pub(super) fn around(
         nominal: &Member,
         order: usize,
@@ -44,7 +44,7 @@ impl FourierFamily {
         Ok(family)
     }
 
-    /// The gait of these coefficients.
+    /// Gait with these coefficients.
     pub(super) fn gait(x: &DVector<f64>) -> SymmetricFourier<Vec<[f64; 2]>> {
         let (coefficients, _) = x.as_slice().as_chunks();
         SymmetricFourier {
@@ -52,19 +52,19 @@ impl FourierFamily {
         }
     }
 
-    /// ½ ln ξ of a member, over series as long as this one.
+    /// ½ ln ξ of a member for series of this length.
     fn objective<'a>(x: &DVector<f64>, member: &'a Member) -> Objective<'a> {
         let order = x.len() / 2;
         Objective::new(&member.model, order, 48 + 4 * order)
     }
 
-    /// ln ξ̄ of a design, with its derivatives.
+    /// ln ξ̄ of a design with its derivatives.
     fn weighted(x: &DVector<f64>, members: &[(Member, f64)]) -> Expansion {
         let size = x.len();
         let (mut xi, mut slope) = (0.0, DVector::zeros(size));
         let mut bend = DMatrix::zeros(size, size);
         for (member, weight) in members.iter().filter(|(_, weight)| *weight != 0.0) {
-            // The series is linear in its coefficients.
+            // The curve is linear in its coefficients.
             let turned = x * member.gain;
             let found = Self::objective(x, member).expansion(turned.as_slice());
             let share = weight * (2.0 * found.value.objective).exp();
@@ -97,7 +97,7 @@ impl Family for FourierFamily {
         cycle::of_series(&Self::gait(x))
     }
 
-    /// Stationary, and a maximum: the largest curvature over the magnitude of the steepest.
+    /// Conditions of a stationary point and of a maximum: the largest eigenvalue of the Hessian over the largest magnitude.
     fn conditions(&self, x: &DVector<f64>, members: &[(Member, f64)]) -> Vec<Check> {
         let Expansion {
             gradient, hessian, ..
@@ -127,7 +127,7 @@ impl Design for FourierFamily {
         stroke.efficiency()
     }
 
-    /// The climb of the efficiency search, on ln ξ̄.
+    /// Maximises ln ξ̄ by the ascent of the efficiency search.
     fn solve(
         &self,
         start: &DVector<f64>,

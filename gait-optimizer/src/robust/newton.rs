@@ -1,4 +1,4 @@
-//! Newton's method with a Jacobian by differences, and what a family of gaits must offer to be designed robustly.
+//! Newton's method with a finite-difference Jacobian, and the interface of a family of gaits for robust design.
 
 use nalgebra::{DMatrix, DVector};
 use swimmer_files::Objective;
@@ -10,28 +10,28 @@ use crate::cycle::Cycle;
 use crate::member::Member;
 use crate::numerics::damped;
 
-/// A family of gaits in which the best for a weighted sum over swimmers can be found.
+/// Family of gaits in which the optimum of a weighted sum over swimmers can be computed.
 pub(super) trait Design {
-    /// A gait of the family.
+    /// Gait of the family.
     type Point: Clone;
-    /// Whether values swum again are compared relatively.
+    /// `true` if re-integrated values are compared by relative difference.
     const RELATIVE: bool = true;
 
-    /// The nominal optimum.
+    /// Nominal optimum.
     fn start(&self) -> Self::Point;
 
-    /// The objective of a member; larger is better.
+    /// Objective of a member, to be maximised.
     fn value(&self, point: &Self::Point, member: &Member) -> f64;
 
-    /// The same of a gait swum by the model's own integration.
+    /// Objective from the model's own integration of the gait.
     fn swum(&self, point: &Self::Point, stroke: &Stroke<f64>) -> f64;
 
-    /// Its unit, and its sign, in what is told.
+    /// Factor from the objective to the reported value.
     fn unit(&self) -> f64 {
         1.0
     }
 
-    /// The stationary point of the weighted sum near `start`.
+    /// Stationary point of the weighted sum near `start`.
     fn solve(
         &self,
         start: &Self::Point,
@@ -39,11 +39,11 @@ pub(super) trait Design {
     ) -> Result<Self::Point, RobustError>;
 }
 
-/// A family of gaits with the paper's symmetries.
+/// Family of gaits with the paper's symmetries.
 pub(super) trait Family: Design {
     const OBJECTIVE: Objective;
 
-    /// At constant power of this model, or as the family times it.
+    /// Sampled cycle, at constant power of this model or with the family's own timing.
     fn cycle(&self, model: &Model<f64>, point: &Self::Point) -> Cycle;
 
     /// First- and second-order conditions of the weighted sum.
@@ -52,13 +52,12 @@ pub(super) trait Family: Design {
 
 const STEPS: usize = 40;
 const HALVINGS: usize = 12;
-/// Step of the differences; their error slows the last steps a little and shifts no root.
+/// Step of the finite differences. Their error slows the last iterations slightly and does not shift the root.
 const DIFFERENCE: f64 = 1e-7;
-/// Jacobians are kept while a step gains this factor.
+/// Reduction of the residual per step at which the Jacobian is kept.
 const GOOD: f64 = 0.05;
 
-/// A root of `residual` near `start`, to `tolerance` in the largest component. No component moves further than `longest` in
-/// a step.
+/// Root of `residual` near `start`, to `tolerance` in the largest component. No component changes by more than `longest` in a step.
 pub(super) fn newton(
     residual: impl Fn(&DVector<f64>) -> DVector<f64>,
     start: DVector<f64>,
@@ -87,7 +86,7 @@ pub(super) fn newton(
             })
         });
         let Some(better) = better else {
-            // At the floor of rounding a step may gain nothing more.
+            // Near rounding a step may not reduce the residual further.
             if before <= 10.0 * tolerance {
                 return Ok(x);
             }

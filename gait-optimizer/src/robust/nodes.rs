@@ -9,10 +9,10 @@ use nalgebra::{DMatrix, DVector, Vector2};
 
 use crate::height_map::legendre::gauss;
 
-/// A rule of `degree + 1` nodes.
+/// Rule with `degree + 1` nodes.
 #[derive(Debug, Clone)]
 pub(super) struct Nodes {
-    /// From 0 to 1, increasing.
+    /// Nodes from 0 to 1, increasing.
     pub(super) place: Vec<f64>,
     derivative: DMatrix<f64>,
     integral: DMatrix<f64>,
@@ -48,7 +48,7 @@ impl Nodes {
         nodes
     }
 
-    /// Of the barycentric form.
+    /// Weight of the barycentric form.
     fn weight(&self, j: usize) -> f64 {
         let half = if j == 0 || j + 1 == self.count() {
             0.5
@@ -58,7 +58,7 @@ impl Nodes {
         if j.is_multiple_of(2) { half } else { -half }
     }
 
-    /// How much the value at each node counts in the polynomial's at t.
+    /// Values of the Lagrange polynomials at t.
     fn shares(&self, t: f64) -> Vec<f64> {
         let terms = self.place.iter().enumerate();
         let mut terms: Vec<f64> = terms
@@ -80,7 +80,7 @@ impl Nodes {
         self.place.len()
     }
 
-    /// The derivative of a curve at the nodes.
+    /// Derivative of a curve at the nodes.
     pub(super) fn slopes(&self, values: &[Vector2<f64>]) -> Vec<Vector2<f64>> {
         let rows = self.derivative.row_iter();
         rows.map(|row| {
@@ -92,14 +92,14 @@ impl Nodes {
         .collect()
     }
 
-    /// The integral from 0 to each node.
+    /// Integral from 0 to each node.
     pub(super) fn integrals(&self, values: &[f64]) -> Vec<f64> {
         (&self.integral * DVector::from_column_slice(values))
             .data
             .into()
     }
 
-    /// The polynomial at t.
+    /// Value of the polynomial at t.
     pub(super) fn value<V: Copy + Mul<f64, Output = V> + Sum>(&self, values: &[V], t: f64) -> V {
         let shares = self.shares(t).into_iter().zip(values);
         shares.map(|(share, value)| *value * share).sum()

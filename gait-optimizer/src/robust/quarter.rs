@@ -1,4 +1,4 @@
-//! A quarter gait swum by one member of the ensemble, with the height of its displacement along the way.
+//! Integration of a quarter gait for one member of the ensemble, with the height along it.
 
 use nalgebra::{Rotation2, Vector2, Vector3};
 
@@ -6,19 +6,19 @@ use super::nodes::Nodes;
 use crate::member::Member;
 use crate::momentum::{Height, Momentum};
 
-/// One smooth arc: shapes and their derivative at the nodes.
+/// Smooth arc: shapes and their derivatives at the nodes.
 #[derive(Debug, Clone)]
 pub(super) struct ArcCurve {
     pub(super) phi: Vec<Vector2<f64>>,
     pub(super) slope: Vec<Vector2<f64>>,
 }
 
-/// A swimmer's way along a quarter gait. Lengths are over L.
+/// Trajectory of a swimmer along a quarter gait. Lengths are over L.
 #[derive(Debug, Clone)]
 pub(super) struct Trajectory {
-    /// X of the full cycle, four times the quarter's.
+    /// X of the full cycle, four times that of the quarter.
     pub(super) displacement: f64,
-    /// y and heading at the nodes, arc after arc.
+    /// y and heading at the nodes, arc by arc.
     places: Vec<[f64; 2]>,
 }
 
@@ -51,8 +51,8 @@ impl Trajectory {
         }
     }
 
-    /// Height at node `index`, counted over all arcs, for the shape there, and its gradient with the swimmer carried along: what
-    /// a push of the curve to its right, a radian for a radian of its length, adds to a quarter's x.
+    /// Height at node `index`, counted over all arcs, and its gradient: the change of the quarter's x per unit perturbation of the curve
+    /// to its right.
     pub(super) fn height(&self, member: &Member, index: usize, phi: &Vector2<f64>) -> Height {
         let Member { model, gain, .. } = member;
         let place = |place: Option<&[f64; 2]>| place.copied().unwrap_or([f64::NAN; 2]);

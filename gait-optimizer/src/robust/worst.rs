@@ -1,9 +1,9 @@
-//! Max–min: the gait whose worst member fares best.
+//! Max–min problem: the gait with the best worst case, by an active-set method.
 //!
-//! At such a gait Σ λₖ ∇fₖ = 0 with λₖ ≥ 0, Σ λₖ = 1, and λₖ > 0 only where fₖ is the least: the gait is the best for a
-//! weighted mean, and the weights are found by adding the worst member, making the active ones equal, and dropping those
-//! whose weight would be negative. The worst member is looked for over all that is left open, so an active one moves along with
-//! the gait until it is a minimum.
+//! The KKT conditions are Σ λₖ ∇fₖ = 0 with λₖ ≥ 0, Σ λₖ = 1, and λₖ > 0 only if fₖ is the least. The gait is therefore the best for a
+//! weighted mean. The active set is updated by adding the worst member, equalising the active members, and dropping those with a
+//! negative weight. The worst member is searched over the whole ensemble, so an active member moves with the gait until it is a
+//! minimum.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -12,7 +12,7 @@ use super::newton::Design;
 use super::{Over, RobustError};
 use crate::member::Member;
 
-/// A gait with the members that hold it, each with its multiplier.
+/// Gait with its active members and their multipliers.
 #[derive(Debug, Clone)]
 pub(super) struct Held<P> {
     pub(super) point: P,
@@ -21,7 +21,7 @@ pub(super) struct Held<P> {
 
 const EXCHANGES: usize = 30;
 const STEPS: usize = 30;
-/// Values this close, relatively, are equal.
+/// Relative difference below which values are equal.
 const EQUAL: f64 = 1e-11;
 const DIFFERENCE: f64 = 1e-4;
 
@@ -32,7 +32,7 @@ impl<P> Held<P> {
     }
 }
 
-/// The gait that is the best over the uncertainty.
+/// Best gait over the uncertainty.
 pub(super) fn find<D: Design>(
     design: &D,
     ensemble: &Ensemble<'_>,
@@ -53,7 +53,7 @@ pub(super) fn find<D: Design>(
     })
 }
 
-/// The gait of the best worst case.
+/// Gait with the best worst case.
 fn worst<D: Design>(design: &D, ensemble: &Ensemble<'_>) -> Result<Held<D::Point>, RobustError> {
     let mut held = Held {
         point: design.start(),
@@ -83,7 +83,7 @@ fn worst<D: Design>(design: &D, ensemble: &Ensemble<'_>) -> Result<Held<D::Point
     Err(RobustError::NotConverged { residual: apart })
 }
 
-/// Solves for the weights at which all active members fare alike; members whose weight turns negative are dropped.
+/// Solves for the weights at which all active members have the same value; members whose weight becomes negative are dropped.
 pub(super) fn equalise<D: Design>(
     design: &D,
     ensemble: &Ensemble<'_>,
@@ -97,7 +97,7 @@ pub(super) fn equalise<D: Design>(
         if held.members.len() < 2 || left <= EQUAL {
             return Ok(());
         }
-        // How the differences answer to the weights of all but the first member.
+        // Derivatives of the differences by the weights of all members except the first.
         let columns: Result<Vec<DVector<f64>>, RobustError> = (1..held.members.len())
             .map(|i| {
                 let mut other = held.clone();
@@ -128,13 +128,13 @@ pub(super) fn equalise<D: Design>(
     Err(RobustError::NotConverged { residual: left })
 }
 
-/// Moves weight to active member `i` from the first.
+/// Transfers weight from the first active member to member `i`.
 fn shift(members: &mut [(Lowest, f64)], i: usize, by: f64) {
     members[i].1 += by;
     members[0].1 -= by;
 }
 
-/// Value of each active member but the first, less the first's; and their size.
+/// Difference of each active member's value from the first one's, and the scale of the values.
 fn differences<D: Design>(design: &D, held: &Held<D::Point>) -> (DVector<f64>, f64) {
     let values = held.members.iter();
     let values: Vec<f64> = values

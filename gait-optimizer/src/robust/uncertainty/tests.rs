@@ -1,4 +1,4 @@
-//! The swimmers that an uncertainty leaves open.
+//! Tests of the ensembles that follow from an uncertainty.
 
 use super::*;
 
@@ -11,7 +11,7 @@ fn wide() -> Uncertainty {
     }
 }
 
-/// As a calibration gives them: about χ by a factor, about r_s by a length, never below nothing.
+/// Uncertainty as a calibration reports it: a factor about χ, a length about r_s, not below zero.
 fn fitted(chi: f64, [low, high]: [f64; 2], correlation: Option<f64>) -> Uncertainty {
     Uncertainty {
         sphere_radius_interval: [0.0, 0.05],
@@ -38,13 +38,13 @@ fn the_rule_has_the_moments_of_the_normal_distribution() {
     assert!((mean(&|_, c| c * c) / (dchi * dchi) - 1.0).abs() < 1e-8);
     assert!((mean(&|r, c| r * c) / (0.7 * dr * dchi) - 1.0).abs() < 1e-8);
     assert!((mean(&|_, c| c.powi(4)) / (3.0 * dchi.powi(4)) - 1.0).abs() < 1e-8);
-    // A χ known to a factor of three has no swimmers of no χ, nor any that a floor made.
+    // With χ known to a factor of three no member has χ = 0 or a clamped value.
     let open = fitted(5.16, [1.55, 17.1], Some(-0.9))
         .normal(&Swimmer::robot())
         .unwrap();
     let logs = open.iter().map(|(s, w)| w * s.swimmer.chi.ln());
     assert!((logs.sum::<f64>() - 5.16_f64.ln()).abs() < 1e-12);
-    // An exact r_s leaves χ its whole spread, whatever the correlation.
+    // With an exact r_s, χ has its whole spread for any correlation.
     let alone = Uncertainty {
         sphere_radius_interval: [0.07; 2],
         ..wide()
@@ -56,7 +56,7 @@ fn the_rule_has_the_moments_of_the_normal_distribution() {
     assert!((spread.sum::<f64>() / (dchi * dchi) - 1.0).abs() < 1e-8);
 }
 
-/// Many swimmers of all that is left open.
+/// Many swimmers of the ensemble.
 fn fine(case: &Uncertainty) -> Vec<Swimmer<f64>> {
     let [first, second, _] = case.axes();
     let steps = 512;
