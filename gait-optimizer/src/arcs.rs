@@ -1,4 +1,4 @@
-//! An arc of most displacement, integrated until an event ends it: for quarters and for closed curves.
+//! Integration of an arc of greatest displacement up to the event that ends it, for quarters and for closed curves.
 //!
 //! ```text
 //!                a bound is reached
@@ -10,8 +10,8 @@
 //!                the height falls to zero
 //! ```
 //!
-//! On entering a bound the height is zero as well; there it rises, so the exit event, which waits for it to *fall* to zero,
-//! is armed only once it has left that neighbourhood.
+//! On entering a bound the height is zero as well, but rising. The exit event is a *falling* zero, so it is armed only after the
+//! arc has left that neighbourhood.
 
 mod event;
 mod trace;
@@ -25,61 +25,62 @@ use crate::numerics::locate;
 use crate::region::{Bound, Region};
 use crate::runge_kutta::{Point, StepControl, controlled_step, exact_step};
 
-/// One arc of a chain.
+/// Arc of a chain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Leg {
     pub(crate) motion: Motion,
     pub(crate) from: State,
     pub(crate) to: State,
-    /// Of its curve in the (φ₁, φ₂) plane \[rad\].
+    /// Length in the (φ₁, φ₂) plane \[rad\].
     pub(crate) length: f64,
 }
 
-/// What ends a chain of arcs.
+/// End condition of a chain of arcs.
 pub(crate) trait EndCondition {
-    /// Its ways to end.
+    /// Kind of an end.
     type End: Copy + PartialEq;
 
-    /// Those that may end it along such an arc.
+    /// Ends that can occur along such an arc.
     fn watched(&self, motion: &Motion) -> impl Iterator<Item = Self::End>;
 
-    /// A value that falls through zero where the chain ends, with its slope along the arc.
+    /// Value that falls through zero at the end of the chain, with its slope along the arc.
     fn value(&self, end: Self::End, at: &Point<6>) -> (f64, f64);
 
-    /// Whether it counts within a step up to a point, where the chain is so long \[rad\].
+    /// Returns `true` if the end counts within a step up to a point at which the chain has this length \[rad\].
     fn counts(&self, _end: Self::End, _after: &Point<6>, _length: f64) -> bool {
         true
     }
 
-    /// Whether it comes before a bound that is met at the same place.
+    /// Returns `true` if the end precedes a bound that is reached at the same point.
     fn precedes_bounds(_end: Self::End) -> bool {
         false
     }
 
-    /// Whether a bound ends such an arc.
+    /// Returns `true` if a bound ends such an arc.
     fn stops_at(&self, _bound: &Bound, _motion: &Motion) -> bool {
         true
     }
 }
 
-/// How arcs are traced, and along what.
+/// Integrator of arcs with its settings.
 pub(crate) struct Tracer<'a, C> {
     pub(crate) flow: Flow<'a>,
     pub(crate) region: &'a Region,
     pub(crate) control: StepControl,
-    /// Whether bounds are left where the height falls to zero.
+    /// `true` if an arc leaves its bound when the height falls to zero.
     pub(crate) leaves: bool,
     pub(crate) ends: &'a C,
-    /// Length of the chain before this arc, and how long it may become \[rad\].
+    /// Length of the chain before this arc \[rad\]; the next field is its limit.
     pub(crate) before: f64,
     pub(crate) longest: f64,
 }
 
-/// Most steps of an arc: where steps shrink to nothing the zero of the height has no direction.
+/// Largest number of steps of an arc. Steps become arbitrarily small where the zero of the height has no direction.
 const MOST_STEPS: usize = 600;
 
 impl<C: EndCondition> Tracer<'_, C> {
-    /// Arc after arc from a state, at most so many: what follows each, `next` says, or how it all ended; none where it has not.
+    /// Integrates arc after arc from a state, up to a limit. `next` returns the following arc or the result. Returns `None` if the chain
+    /// does not end.
     pub(crate) fn chain<F>(
         mut self,
         start: State,
@@ -99,7 +100,7 @@ impl<C: EndCondition> Tracer<'_, C> {
         (legs, None)
     }
 
-    /// Integrates until the first event; none where steps fail or the chain grows too long.
+    /// Integrates to the first event. The event is `None` if a step fails or the chain becomes too long.
     fn arc(&self, start: State) -> (Leg, Option<Event<C::End>>) {
         let leg = |to: State, length: f64| Leg {
             motion: self.flow.motion,
@@ -110,7 +111,7 @@ impl<C: EndCondition> Tracer<'_, C> {
         let mut here = Point::new(&self.flow, start);
         let mut watched = self.watch(&here);
         let mut length = 0.0;
-        // About as long as steps of a method of order eight are.
+        // Approximate step length of a method of order eight.
         let mut try_length = 2.0 * self.control.tolerance.powf(0.125);
         for _ in 0..MOST_STEPS {
             if self.before + length >= self.longest {
@@ -139,7 +140,7 @@ impl<C: EndCondition> Tracer<'_, C> {
         (leg(here.z, length), None)
     }
 
-    /// Every event's value and slope at a point.
+    /// Value and slope of every event at a point.
     fn watch(&self, at: &Point<6>) -> Watched<C::End> {
         let mut watched = [None; MOST_EVENTS];
         let mut slots = watched.iter_mut();
@@ -176,8 +177,8 @@ impl<C: EndCondition> Tracer<'_, C> {
                 let end = self.flow.motion.piece_end(&phi);
                 end.map_or((1.0, 0.0), |(left, slope)| (left, slope.dot(&rate)))
             }
-            // The height where the region lies left of the motion, minus the height where it lies right (paper, exit
-            // criterion, with the sign that belongs to a maximum).
+            // The height if the region is on the left of the motion, minus the height if it is on the right (paper, exit
+            // criterion, with the sign of a maximum).
             Event::HeightGone => match self.flow.motion {
                 Motion::Along(track) => {
                     let height = self.flow.height(&at.z);
@@ -192,7 +193,7 @@ impl<C: EndCondition> Tracer<'_, C> {
         }
     }
 
-    /// Cuts the step to end where the event's value is zero.
+    /// Shortens the step to end at the zero of the event's value.
     fn located(
         &self,
         here: &Point<6>,

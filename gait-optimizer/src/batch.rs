@@ -1,10 +1,9 @@
 //! A, W and their derivatives at many shapes at once.
 //!
-//! The formulas are [`swimmer_model::Model`]'s own, inlined into a loop that the compiler turns into vector instructions; which of
-//! them the machine has is asked when a batch is made. The numbers are the model's to the last bit, so it never matters to an answer
-//! which of the two was asked.
+//! The formulas are those of [`swimmer_model::Model`], inlined into a loop that the compiler vectorises. The instruction set is
+//! detected when a batch is created. The results are equal to the model's to the last bit.
 
-// What is not inlined is compiled for the least of machines, without its vector instructions.
+// A function that is not inlined would be compiled for the baseline target without vector instructions.
 #![allow(clippy::inline_always)]
 
 mod entries;
@@ -20,7 +19,7 @@ pub(crate) use entries::{Blocks, Connection, First, Second, Values};
 use entries::{ENTRIES, block, entries};
 use sine::sines_and_cosines;
 
-/// A swimmer's model for many shapes at once.
+/// Model of a swimmer for many shapes at once.
 ///
 /// ```
 /// use gait_optimizer::{Batch, ConnectionsAndPowers};
@@ -49,19 +48,19 @@ pub struct ConnectionsAndPowers {
     pub power: [Vec<f64>; 3],
 }
 
-/// Shapes of a group, which one vector instruction or a few hold.
+/// Number of shapes per group, which fit into one or a few vector registers.
 const WIDTH: usize = 8;
-/// Groups and shapes that are looked at in one call.
+/// Number of groups per call.
 const GROUPS: usize = 2;
 const AT_ONCE: usize = GROUPS * WIDTH;
 
 /// φ₁ and φ₂ of all shapes of each group.
 type Shapes = [[[f64; WIDTH]; 2]; GROUPS];
-/// Each entry of each block at all shapes of each group.
+/// Entries of each block at all shapes of each group.
 type Found<const B: usize> = [[[[f64; WIDTH]; ENTRIES]; B]; GROUPS];
 
 impl Batch {
-    /// Of a swimmer.
+    /// Creates a batch for a swimmer.
     ///
     /// # Errors
     /// As [`swimmer_model::Model::new`].
@@ -69,7 +68,7 @@ impl Batch {
         Ok(Self::of(&Model::new(swimmer)?))
     }
 
-    /// Of a model.
+    /// Creates a batch for a model.
     pub fn of(model: &Model<f64>) -> Self {
         Self {
             model: *model,
@@ -77,7 +76,7 @@ impl Batch {
         }
     }
 
-    /// A and W at the shapes (φ₁, φ₂) \[rad\]: as many as the shorter list has. What `found` had is replaced, its memory kept.
+    /// Evaluates A and W at the shapes (φ₁, φ₂) \[rad\], as many as the shorter list has. `found` is overwritten and its memory reused.
     pub fn connections_and_powers(
         &self,
         phi1: &[f64],
@@ -111,14 +110,14 @@ impl Batch {
         }
     }
 
-    /// `then` is told the number of each shape \[rad\] and what the model has there, in order.
+    /// Calls `then` with the index of each shape \[rad\] and the model's values there, in order.
     pub(crate) fn each<E: Blocks<B>, const B: usize>(
         &self,
         _: E,
         phi: impl Iterator<Item = Vector2<f64>>,
         mut then: impl FnMut(usize, E::One),
     ) {
-        // There `libm` is as good, and every kilobyte counts.
+        // On wasm the batch is no faster than the model, and code size matters.
         if cfg!(target_family = "wasm") {
             for (number, phi) in phi.enumerate() {
                 let turns = [phi.x, phi.y].map(Scalar::sin_cos);
@@ -145,7 +144,7 @@ impl Batch {
         }
     }
 
-    /// Entries at the first `count` of these shapes.
+    /// Evaluates the first `count` of these shapes.
     fn some<E: Blocks<B>, const B: usize>(&self, shapes: &Shapes, count: usize) -> Found<B> {
         let mut found = [[[[0.0; WIDTH]; ENTRIES]; B]; GROUPS];
         self.machine.dispatch(Groups::<E, B> {
@@ -158,7 +157,7 @@ impl Batch {
     }
 }
 
-/// Groups of shapes to be looked at, for whatever instructions there are.
+/// Groups of shapes to be evaluated with any instruction set.
 struct Groups<'a, E, const B: usize> {
     model: &'a Model<f64>,
     shapes: &'a [[[f64; WIDTH]; 2]],
@@ -171,7 +170,7 @@ impl<E: Blocks<B>, const B: usize> pulp::WithSimd for Groups<'_, E, B> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
-        // A copy, so that nothing can be thought to change it meanwhile.
+        // A local copy lets the compiler assume that the model does not change.
         let model = *self.model;
         for (phi, found) in self.shapes.iter().zip(self.found) {
             let (sin1, cos1) = sines_and_cosines(&phi[0]);

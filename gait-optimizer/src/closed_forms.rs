@@ -1,7 +1,7 @@
-//! The paper's closed forms of Appendix B, mended: what shows that a gait of most efficiency is smooth at its ends.
+//! Closed forms of the paper's Appendix B, corrected. They show that an efficiency gait is smooth at its ends.
 //!
-//! With a = W₁₁, b = 2 W₁₂, they give 2a + b on φ₁ = φ₂ and 2a − b on φ₁ = −φ₂ for side links that are alike and one `c_t` for
-//! all links. In D₂ the paper prints `8z³` for `8r³` and leaves out a factor χ before the last bracket.
+//! With a = W₁₁ and b = 2 W₁₂ they are 2a + b on φ₁ = φ₂ and 2a − b on φ₁ = −φ₂, for equal side links and one `c_t` for all links. In
+//! D₂ the paper prints `8z³` instead of `8r³` and omits a factor χ before the last bracket.
 
 use swimmer_model::Swimmer;
 
@@ -16,7 +16,7 @@ pub fn along_the_symmetric_shapes(swimmer: &Swimmer<f64>, phi: f64) -> f64 {
     chi * drag * l1.powi(3) * numerator / denominator
 }
 
-/// 2a − b at (−φ, φ), over μ (equation B9, mended).
+/// 2a − b at (−φ, φ), over μ (equation B9, corrected).
 pub fn along_the_point_symmetric_shapes(swimmer: &Swimmer<f64>, phi: f64) -> f64 {
     let (l0, l1, chi) = (swimmer.links.middle, swimmer.links.front, swimmer.chi);
     let drag = swimmer.side_drag();

@@ -1,8 +1,8 @@
-//! Gaits of most Lighthill efficiency (paper, section V), in the class of closed curves with the paper's two symmetries.
+//! Gaits of greatest Lighthill efficiency (paper, section V) among closed curves with the paper's two symmetries.
 //!
-//! The chain needs no guess: circles whose X/S has a local maximum over the amplitude start Fourier series of rising order
-//! ([`fourier`]), and shooting takes a series of low order to an extremal of the maximum principle (`extremal`, which also
-//! makes the gait with its certificate).
+//! No initial guess is needed. Circles whose X/S has a local maximum over the amplitude start Fourier series of rising order
+//! ([`fourier`]). Shooting polishes a series of low order to an extremal of Pontryagin's principle (`extremal`, which also
+//! computes the gait with its certificate).
 
 mod bounded;
 mod chain;
@@ -28,7 +28,7 @@ pub use error::EfficiencyError;
 pub(crate) use fourier::{Expansion, Objective, Value, climb};
 pub use near::EfficiencySeed;
 
-/// Which of the two optima.
+/// Branch of efficiency optima.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Branch {
     /// X > 0.
@@ -57,7 +57,7 @@ impl Branch {
         self.sign() * gait.displacement_over_length > 0.0 && gait.start_angle > self.least_start()
     }
 
-    /// Start angles are above this \[rad\].
+    /// Least start angle \[rad\].
     fn least_start(self) -> f64 {
         match self {
             Self::Small => 0.0,
@@ -75,19 +75,19 @@ impl fmt::Display for Branch {
     }
 }
 
-/// What leads to the guess that is shot from. Every method ends with the same shooting and certificate.
+/// Method for the initial guess. Every method ends with the same shooting and certificate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Method {
-    /// The fastest that converges.
+    /// Fastest method that converges.
     Auto,
-    /// Fourier series alone, up to the order at which they have settled.
+    /// Fourier series alone, up to the order at which they have converged.
     Fourier,
     /// Fourier series of low order.
     Shooting,
 }
 
 impl Method {
-    /// The word on the command line and in JSON.
+    /// Name on the command line and in JSON.
     pub fn word(self) -> &'static str {
         match self {
             Self::Auto => "auto",
@@ -103,23 +103,23 @@ impl fmt::Display for Method {
     }
 }
 
-/// An efficiency problem: whose gait, which of the optima, how.
+/// Inputs of the search for an efficiency gait.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EfficiencyProblem {
-    /// The swimmer; its side links must be alike.
+    /// Swimmer with equal side links.
     pub swimmer: Swimmer<f64>,
-    /// Which optimum.
+    /// Branch.
     pub branch: Branch,
-    /// How.
+    /// Method for the initial guess.
     pub method: Method,
-    /// Bounds on the joint angles; `max_angle` and `no_overlap` apply.
+    /// Bounds on the joint angles, of which `max_angle` and `no_overlap` are used.
     pub bounds: Bounds,
-    /// Samples of the quarter gait; the cycle has four times as many.
+    /// Number of samples of the quarter; the cycle has four times as many.
     pub quarter_samples: usize,
 }
 
 impl EfficiencyProblem {
-    /// The problem without bounds.
+    /// Problem without bounds.
     pub fn new(swimmer: Swimmer<f64>, branch: Branch) -> Self {
         Self {
             swimmer,
@@ -130,24 +130,24 @@ impl EfficiencyProblem {
         }
     }
 
-    /// The model of the problem's swimmer with L = 1.
+    /// Validates the problem and returns the model of its swimmer with L = 1.
     ///
     /// # Errors
-    /// [`InvalidProblem`]: what is wrong with the problem.
+    /// [`InvalidProblem`] if the problem is invalid.
     pub fn validated(&self) -> Result<Model<f64>, InvalidProblem> {
         validated(&self.swimmer, &self.bounds, GaitClass::Symmetric)
     }
 }
 
-/// The most efficient gait of a branch. With several local optima on it, the most efficient.
+/// Returns the gait of greatest efficiency of a branch, the best of several local optima.
 ///
 /// # Errors
-/// [`EfficiencyError`]: what is wrong with the problem, or why the branch has no optimum.
+/// [`EfficiencyError`] if the problem is invalid or the branch has no optimum.
 pub fn efficiency(problem: &EfficiencyProblem) -> Result<OptimalGait, EfficiencyError> {
     no_saddle(problem.branch, best_symmetric(problem)?)
 }
 
-/// The most efficient gait of a branch among those with the paper's symmetries, be it a saddle among all closed curves.
+/// Gait of greatest efficiency of a branch among those with the paper's symmetries, even if it is a saddle among all closed curves.
 pub(crate) fn best_symmetric(problem: &EfficiencyProblem) -> Result<OptimalGait, EfficiencyError> {
     let model = problem.validated()?;
     refuse_immobile(&model, &problem.bounds)?;
@@ -168,7 +168,7 @@ pub(crate) fn best_symmetric(problem: &EfficiencyProblem) -> Result<OptimalGait,
     let mut best: Option<Found> = None;
     for (extremal, origin) in led_to {
         match free(problem, &model, extremal, origin) {
-            // An optimum among all curves goes before one among gaits of its symmetry.
+            // An optimum among all curves has priority over one among symmetric gaits.
             Ok(found) if found.gait.certificate.pass() => {
                 best = Some(found);
                 break;
@@ -183,19 +183,19 @@ pub(crate) fn best_symmetric(problem: &EfficiencyProblem) -> Result<OptimalGait,
     }
 }
 
-/// A free gait with the paper's two symmetries, from φ₁ = φ₂ > 0 counter-clockwise, that a direct method found by itself.
+/// Free gait of a direct method with the paper's two symmetries, counter-clockwise from φ₁ = φ₂ > 0.
 #[derive(Debug, Clone, Copy)]
 pub struct Direct<'a> {
-    /// The method's name.
+    /// Name of the method.
     pub method: &'static str,
     /// The gait.
     pub gait: &'a AnyGait,
-    /// The method's own ξ.
+    /// ξ of the method itself.
     pub efficiency: f64,
 }
 
-/// As [`efficiency()`], with a gait of another method to start from, where that one is: it is shot, certified and, where the problem
-/// has bounds, followed as they tighten.
+/// Solves as [`efficiency()`] does, from the gait of another method: polishes it by shooting, certifies it and, if the problem has
+/// bounds, follows it while they tighten.
 ///
 /// ```
 /// use gait_optimizer::{Branch, Direct, EfficiencyProblem, efficiency, efficiency_from};
@@ -210,7 +210,7 @@ pub struct Direct<'a> {
 /// ```
 ///
 /// # Errors
-/// As [`efficiency()`]; [`EfficiencyError::NotConverged`] where no optimum lies near the gait.
+/// As [`efficiency()`]; [`EfficiencyError::NotConverged`] if there is no optimum near the gait.
 pub fn efficiency_from(
     problem: &EfficiencyProblem,
     direct: &Direct<'_>,
@@ -235,7 +235,7 @@ pub fn efficiency_from(
     no_saddle(problem.branch, within_bounds(problem, &model, &free)?)
 }
 
-/// A free optimum under the problem's bounds.
+/// Follows a free optimum to the bounds of the problem.
 fn within_bounds(
     problem: &EfficiencyProblem,
     model: &Model<f64>,
@@ -243,7 +243,7 @@ fn within_bounds(
 ) -> Result<OptimalGait, EfficiencyError> {
     let walls = walls(&problem.bounds, &problem.swimmer.links);
     let depths = free.gait.phi().iter().filter_map(|phi| walls.nearest(phi));
-    // A free gait that keeps the bounds is the optimum under them too.
+    // A free gait that satisfies the bounds is the bounded optimum too.
     if depths.map(|(_, depth)| depth).all(|depth| depth <= 0.0) {
         return Ok(OptimalGait {
             bounds: problem.bounds,
@@ -253,7 +253,7 @@ fn within_bounds(
     bounded::bounded(problem, model, free)
 }
 
-/// A gait that no other nearby outdoes, with the paper's symmetries or without.
+/// Refuses a gait that is a saddle among all closed curves.
 fn no_saddle(branch: Branch, gait: OptimalGait) -> Result<OptimalGait, EfficiencyError> {
     if gait.certificate.pass() {
         return Ok(gait);
@@ -262,7 +262,7 @@ fn no_saddle(branch: Branch, gait: OptimalGait) -> Result<OptimalGait, Efficienc
     Err(EfficiencyError::Saddle { branch, gait })
 }
 
-/// A free extremal as a gait of the branch, certified among those of its symmetry.
+/// Converts a free extremal to a gait of the branch, certified among symmetric gaits.
 fn free(
     problem: &EfficiencyProblem,
     model: &Model<f64>,
@@ -303,7 +303,7 @@ fn free(
     })
 }
 
-/// A gait that no other with the paper's symmetries outdoes nearby.
+/// Refuses a gait that is not certified among symmetric gaits.
 fn certified(branch: Branch, gait: OptimalGait) -> Result<OptimalGait, EfficiencyError> {
     if gait.certificate.holds_among_symmetric() {
         return Ok(gait);
@@ -315,14 +315,14 @@ fn certified(branch: Branch, gait: OptimalGait) -> Result<OptimalGait, Efficienc
     })
 }
 
-/// A gait and the extremal that it samples.
+/// Gait and the extremal from which it was sampled.
 #[derive(Debug, Clone)]
 struct Found {
     gait: OptimalGait,
     extremal: Extremal,
 }
 
-/// An extremal as a gait with its certificate, not yet looked at.
+/// Converts an extremal to a gait with its certificate, which the caller inspects.
 fn finished(
     (problem, model, bounds): (&EfficiencyProblem, &Model<f64>, &Bounds),
     extremal: Extremal,
@@ -330,7 +330,7 @@ fn finished(
 ) -> Result<Found, Unpolished> {
     let samples = 4 * problem.quarter_samples.max(16);
     let mut gait = gait((&problem.swimmer, model, bounds), &extremal, samples)?;
-    // An atlas lists gaits that cross themselves as well.
+    // Gaits that cross themselves belong to the atlas.
     let simple = simple_and_turning_once(gait.phi(), gait.phi());
     gait.certificate = gait.certificate.with(simple.to_vec());
     let power_variation = gait.certificate.value(Condition::ConstantPower);

@@ -1,9 +1,9 @@
-//! Whether gaits move a swimmer at all.
+//! Detection of swimmers that no gait can move.
 //!
-//! Where drag is the same in all directions nothing pushes the swimmer along: its centre of drag rests whatever the joints do,
-//! and a gait without net rotation ends where it began. (It can still turn, as a falling cat does.) Then a multiplier that
-//! makes the height vanish at one shape makes it vanish at all; level curves, and all that is found by following them, are
-//! made of rounding. So the searches ask first how far the height's slope rises above its own rounding.
+//! With isotropic drag the centre of drag is at rest for any motion of the joints, and a gait without net rotation has no net
+//! displacement. (The swimmer can still turn, like a falling cat.) A multiplier that makes the height vanish at one shape then makes
+//! it vanish at all shapes, and its level curves consist of rounding errors. Every search therefore compares the slope of the height
+//! with its rounding first.
 
 use nalgebra::Vector2;
 use swimmer_files::Bounds;
@@ -11,16 +11,16 @@ use swimmer_model::Model;
 
 use crate::momentum::Momentum;
 
-/// The height's slope, over the largest terms that it is summed of, below which no search makes sense.
+/// Least slope of the height, relative to the largest terms of its sum, for which a search is meaningful.
 ///
-/// The terms are rounded to a few units of 1e-16, so a slope of this size is known to about six digits, and with it the direction
-/// of singular arcs. The searches integrate these arcs to 1e-13 and ask for λ₄ = 0 to 1e-10 \[L\]: with fewer digits their steps
-/// only follow the rounding.
+/// The terms have rounding errors of a few 1e-16, so a slope of this size, and the direction of singular arcs, has about six digits.
+/// The searches integrate these arcs to 1e-13 and require λ₄ = 0 to 1e-10 \[L\]; with fewer digits their steps would follow the
+/// rounding.
 const LEAST: f64 = 2e-10;
-/// Shapes looked at along each joint.
+/// Number of shapes along each joint.
 const LOOKS: usize = 8;
 
-/// A swimmer that no gait moves.
+/// Swimmer that no gait moves.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error(
     "no gait moves this swimmer: its drag is the same in all directions (chi = {chi}, and what gaits could gain is {contrast:.1e} \
@@ -29,11 +29,11 @@ const LOOKS: usize = 8;
 pub struct Immobile {
     /// χ.
     pub chi: f64,
-    /// The largest slope of the height within the bounds, over the largest terms that it is summed of.
+    /// Largest slope of the height within the bounds, relative to the largest terms of its sum.
     pub contrast: f64,
 }
 
-/// Refuses a swimmer whose height is nothing but rounding within the bounds.
+/// Refuses a swimmer whose height within the bounds consists of rounding errors.
 pub(crate) fn refuse_immobile(model: &Model<f64>, bounds: &Bounds) -> Result<(), Immobile> {
     let contrast = contrast(model, bounds);
     if contrast > LEAST {
@@ -45,8 +45,8 @@ pub(crate) fn refuse_immobile(model: &Model<f64>, bounds: &Bounds) -> Result<(),
     })
 }
 
-/// The largest slope of the height within the bounds over the largest terms that it is summed of. The multipliers are those that
-/// make the height vanish at the shape, times the θ row of the curvature, so that none is infinite.
+/// Largest slope of the height within the bounds, relative to the largest terms of its sum. The multipliers make the height vanish at
+/// the shape, times the θ row of the curvature to keep them finite.
 fn contrast(model: &Model<f64>, bounds: &Bounds) -> f64 {
     let reach = bounds.max_angle.unwrap_or(std::f64::consts::PI);
     let reach = reach.min(std::f64::consts::PI);
@@ -86,7 +86,7 @@ mod tests {
         contrast(&Model::new(&swimmer.of_unit_length()).unwrap(), &bounds)
     }
 
-    /// Rounding, and nothing but rounding, is below the limit, with and without a sphere; the rest grows as χ − 1.
+    /// Only rounding is below the limit, with and without a sphere; the contrast grows as χ − 1.
     #[test]
     fn the_contrast_is_that_of_the_drag() {
         for base in [Swimmer::purcell(), Swimmer::robot()] {

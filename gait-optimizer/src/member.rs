@@ -1,19 +1,18 @@
-//! One swimmer of many that play the same gait: the ensemble of a robust design.
+//! Member of the ensemble of a robust design.
 
 use swimmer_model::{InvalidSwimmer, Model, Swimmer};
 
-/// A swimmer, and how far its servos turn.
+/// Swimmer with the gain of its servos.
 ///
-/// Its shapes are `gain` times those that the servos are told, about the straight swimmer. So whatever it does along a gait Φ is
-/// what the same swimmer with exact servos does along gain · Φ: a slope in Φ is `gain` times one there, a height, which is over
-/// an area, the square of it.
+/// Its shapes are `gain` times the commanded shapes. Along a gait Φ it moves as the same swimmer with exact servos along gain · Φ.
+/// Derivatives by Φ therefore have a factor `gain`, and heights, which are per area, its square.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Member {
-    /// It itself.
+    /// Swimmer.
     pub(crate) swimmer: Swimmer<f64>,
-    /// Of the swimmer with L = 1.
+    /// Model of the swimmer with L = 1.
     pub(crate) model: Model<f64>,
-    /// What both servos turn over what they are told.
+    /// Actual over commanded angle of both servos.
     pub(crate) gain: f64,
 }
 

@@ -1,11 +1,11 @@
-//! The multipliers of net displacement and rotation, as a momentum that the body carries along its path, and the height: what
-//! a push of the curve gains.
+//! Multipliers of net displacement and rotation as a momentum that is carried along the path of the body, and the height, which is
+//! the first variation under a perturbation of the curve.
 //!
 //! With p dual to the net displacement and c to the net rotation, the momentum in the middle link's own frame is
 //! `μ = (p_x cos θ + p_y sin θ, −p_x sin θ + p_y cos θ, p_x y − p_y x + c)`; its third part is the paper's λ₄ (there
-//! p = (λ₃, 0) and `c = −λ₃ y_f`). A small push of the curve to the right of its motion gains the height h = μ · F(Φ) a unit of
-//! area, F = dA + \[A₁, A₂\]; h is minus the paper's `F = F₁ λ₃ + F₂ λ₄`. It holds on bounds too, and unlike `λ₄ = −F₁/F₂` it is
-//! regular on φ₁ = −φ₂.
+//! p = (λ₃, 0) and `c = −λ₃ y_f`). A small perturbation of the curve to the right of its motion increases the objective by the height
+//! h = μ · F(Φ) per area, F = dA + \[A₁, A₂\]; h is minus the paper's switching function `F = F₁ λ₃ + F₂ λ₄`. It is defined on bounds
+//! too, and unlike `λ₄ = −F₁/F₂` it is regular on φ₁ = −φ₂.
 
 mod arc;
 mod motion;
@@ -18,16 +18,16 @@ use swimmer_model::{Model, SecondDerivatives};
 pub(crate) use arc::{Flow, State, pose, shape};
 pub(crate) use motion::{Motion, Track};
 
-/// One choice of the multipliers, in the frame of the curve's first point.
+/// Multipliers in the frame of the curve's first point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Momentum {
-    /// Dual to the displacement.
+    /// Multiplier of the displacement.
     pub(crate) p: Vector2<f64>,
-    /// Dual to the rotation, over L.
+    /// Multiplier of the rotation, over L.
     pub(crate) c: f64,
 }
 
-/// The height and how it changes along the two joint angles, with the pose carried along.
+/// Height and its total derivatives by the joint angles, with the pose following the motion.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Height {
     pub(crate) value: f64,
@@ -35,7 +35,7 @@ pub(crate) struct Height {
 }
 
 impl Momentum {
-    /// Of a quarter gait that ends at `y_f`, over L: the paper's λ₃ and `λ₄ = λ₃ (y − y_f)`.
+    /// Multipliers of a quarter gait that ends at `y_f`, over L: the paper's λ₃ and `λ₄ = λ₃ (y − y_f)`.
     pub(crate) fn of_quarter(sign: f64, final_y: f64) -> Self {
         Self {
             p: Vector2::new(sign, 0.0),
@@ -43,8 +43,8 @@ impl Momentum {
         }
     }
 
-    /// The momentum with p of length 1 at this angle whose height vanishes at a shape where the pose is the origin; none where
-    /// no multiplier of the rotation makes it vanish.
+    /// Multipliers with p of length 1 at this angle for which the height vanishes at a shape with the pose at the origin. Returns `None`
+    /// if no multiplier of the rotation makes it vanish.
     pub(crate) fn of_zero(model: &Model<f64>, phi: &Vector2<f64>, angle: f64) -> Option<Self> {
         let f = model.first_derivatives(phi).curvature();
         let (sin, cos) = angle.sin_cos();
@@ -64,7 +64,7 @@ impl Momentum {
         )
     }
 
-    /// The same momentum seen from a pose that is made the origin.
+    /// Transforms the multipliers to a frame with its origin at a pose.
     pub(crate) fn seen_from(&self, pose: &[f64; 3]) -> Self {
         let body = self.at(pose);
         Self {
@@ -73,8 +73,8 @@ impl Momentum {
         }
     }
 
-    /// The height with its gradient: total, that is with the pose that each joint's motion brings. (The paper's A and B in
-    /// `Ḟ = A u₁ + B u₂` are minus this gradient over λ₃.)
+    /// Height with its total gradient, including the change of pose with each joint. (The paper's A and B in `Ḟ = A u₁ + B u₂` are minus
+    /// this gradient over λ₃.)
     pub(crate) fn height(&self, second: &SecondDerivatives<f64>, pose: &[f64; 3]) -> Height {
         let mu = self.at(pose);
         let [along1, along2] = second.d_curvature();
@@ -86,7 +86,7 @@ impl Momentum {
         )
     }
 
-    /// Height, connection and power matrix at a shape, from one look at the model.
+    /// Height, connection and power matrix at a shape, from one evaluation of the model.
     pub(crate) fn evaluate(
         &self,
         model: &Model<f64>,
@@ -100,14 +100,14 @@ impl Momentum {
     }
 }
 
-/// The height of μ, from what the curvature's slopes with μ held are.
+/// Height of μ, from the derivatives of the curvature at fixed μ.
 fn height(
     mu: &Vector3<f64>,
     connection: &Matrix3x2<f64>,
     curvature: &Vector3<f64>,
     [held1, held2]: [f64; 2],
 ) -> Height {
-    // μ̇ of the coadjoint equation for the motion that one joint brings.
+    // μ̇ of the coadjoint equation for the motion of one joint.
     let slope = |held: f64, joint: usize| {
         let body = connection.column(joint);
         let push = Vector3::new(mu.y * body.z, -mu.x * body.z, mu.x * body.y - mu.y * body.x);
@@ -120,8 +120,7 @@ fn height(
 }
 
 impl Height {
-    /// Direction of the singular arc: along the zero of the height, with the gain on the left, as the generalised
-    /// Legendre–Clebsch condition asks.
+    /// Direction of the singular arc: along the zero of the height, with the gain on the left (generalised Legendre–Clebsch condition).
     pub(crate) fn singular_direction(&self) -> Vector2<f64> {
         Vector2::new(self.gradient.y, -self.gradient.x) / self.gradient.norm()
     }

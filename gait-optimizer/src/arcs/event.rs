@@ -1,30 +1,29 @@
-//! What ends an arc, and where within a step: looked for on the cubic through value and slope at both ends of the step, so
-//! that two crossings within one step are seen.
+//! Events that end an arc, located on the cubic Hermite interpolant of a step, which can show two crossings in one step.
 
 use crate::numerics::halved;
 
-/// What may end an arc. Each has a value that falls through zero.
+/// Event that can end an arc. Each has a value that falls through zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Event<E> {
-    /// The margin to a bound, by its place in the region.
+    /// Margin to the bound with this index in the region.
     Bound(usize),
-    /// What is left of the piece of the bound that the arc runs along.
+    /// Remaining length of the active bound's piece.
     PieceEnd,
-    /// The height along a bound, which is the bound's multiplier.
+    /// Height along a bound, which is the multiplier of the bound.
     HeightGone,
-    /// What ends the whole chain.
+    /// End of the whole chain.
     End(E),
 }
 
-/// Events have at most this many sources: eight bounds and five others.
+/// Largest number of event sources: eight bounds and five others.
 pub(super) const MOST_EVENTS: usize = 13;
-/// Each watched event with its value and slope at one end of a step.
+/// Monitored events with value and slope at one end of a step.
 pub(super) type Watched<E> = [Option<(Event<E>, f64, f64)>; MOST_EVENTS];
 
-/// Events this close along a step \[rad\] happen together: finer than the first guess of where they are.
+/// Distance along a step \[rad\] below which events coincide; less than the accuracy of their first location.
 const SAME_PLACE: f64 = 1e-6;
 
-/// The first event that counts whose value falls through zero within a step, and where.
+/// First counted event whose value falls through zero within a step, with its place.
 pub(super) fn first_event<E: Copy>(
     (before, after): (&Watched<E>, &Watched<E>),
     length: f64,
@@ -39,16 +38,16 @@ pub(super) fn first_event<E: Copy>(
         _ => None,
     });
     let earliest = crossings.clone().min_by(|a, b| a.1.total_cmp(&b.1))?;
-    // In a corner of the region on φ₁ = −φ₂ both bounds and the end are met at once: it is the end.
+    // At a corner of the region on φ₁ = −φ₂ both bounds and the end coincide; the end has priority.
     let end = crossings.into_iter().find(|(event, _)| precedes(event));
     end.filter(|(_, at)| at - earliest.1 < SAME_PLACE)
         .or(Some(earliest))
 }
 
-/// Where the cubic with these values and slopes at both ends first falls through zero.
+/// First falling zero of the cubic with these values and slopes at both ends.
 fn falls(value: [f64; 2], slope: [f64; 2], length: f64) -> Option<f64> {
     const SCAN_POINTS: u32 = 8;
-    // The cubic keeps within the hull of its control values.
+    // The cubic is within the convex hull of its Bézier control values.
     let inner = [
         value[0] + length * slope[0] / 3.0,
         value[1] - length * slope[1] / 3.0,

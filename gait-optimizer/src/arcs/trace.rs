@@ -1,4 +1,4 @@
-//! A chain of arcs followed once more at equal steps of power length, for its samples.
+//! Sampling of a chain of arcs at equal steps of power length.
 
 use nalgebra::Vector2;
 use swimmer_model::Model;
@@ -8,14 +8,13 @@ use crate::momentum::{Flow, Momentum, Motion, State, shape};
 use crate::runge_kutta::{Point, StepControl, System, advance};
 
 const CONTROL: StepControl = StepControl::to(1e-13);
-/// Fewest intervals of an arc: the interpolation takes five samples on the same side of a corner, and needs more where the arc is
-/// curved.
+/// Least number of intervals of an arc: the interpolation needs five samples on the same side of a corner, and more on a curved arc.
 const FEWEST: usize = 8;
 const FEWEST_CURVED: usize = 24;
-/// Directions this close in angle \[rad\] make no corner.
+/// Change of direction \[rad\] below which there is no corner.
 pub(crate) const SMOOTH: f64 = 1e-7;
 
-/// The dynamics of an arc over the power length.
+/// Dynamics of an arc over the power length.
 pub(crate) struct ByPower<'a>(pub(crate) Flow<'a>);
 
 impl System<6> for ByPower<'_> {
@@ -25,9 +24,9 @@ impl System<6> for ByPower<'_> {
     }
 }
 
-/// The samples of arcs of these power lengths, one after the other, with about so many intervals in all, and the directions in which
-/// they set out and end. Samples fall on the `cuts`, shares of the whole. Where they are `closed` there may be a corner at the
-/// first sample, where the last arc meets it. None where an integration fails.
+/// Samples consecutive arcs with these power lengths in about `intervals` intervals, and returns the directions at their ends. The
+/// `cuts`, shares of the whole, are sample points. If the chain is `closed`, there may be a corner at the first sample. Returns
+/// `None` if an integration fails.
 pub(crate) fn sampled(
     (model, momentum): (&Model<f64>, Momentum),
     start: State,

@@ -1,7 +1,7 @@
 //! The bounds of the joint angles as smooth functions that are positive inside, for the interior-point iteration.
 //!
-//! The two ways in which links may cross (above and below the middle link) have a corner each, where tip touches tip; here it
-//! is rounded, on the safe side, by a soft minimum. The polish works with the sharp bound.
+//! The two sets of crossing shapes (above and below the middle link) have a corner each, where tip touches tip. It is rounded on
+//! the safe side by a soft minimum. The polish uses the sharp bound.
 
 use nalgebra::{Matrix2, Vector2};
 use swimmer_files::Bounds;
@@ -9,22 +9,22 @@ use swimmer_model::Links;
 
 use crate::region::Level;
 
-/// Sides of the box, and two for the links.
+/// Largest number of margins: four sides of the box, and two for the links.
 pub(crate) const MOST: usize = 6;
 
-/// The region that a curve is kept in.
+/// Region of the curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Barrier {
     max_angle: f64,
-    /// Links with L = 1, and the clearance over L, where they may not cross.
+    /// Links with L = 1 and clearance over L, if links must not cross.
     links: Option<(Links<f64>, f64)>,
 }
 
-/// How sharp the rounded corner is, in 1/L: its depth is ln 4 over this.
+/// Sharpness of the rounded corner \[1/L\]; its depth is ln 4 over this.
 const SHARPNESS: f64 = 400.0;
 
 impl Barrier {
-    /// `links` with L = 1; without a bound on the angles curves are kept within the horizon [rad].
+    /// Creates the barrier for `links` with L = 1. Without a bound on the angles, `horizon` \[rad\] limits them.
     pub(crate) fn new(bounds: &Bounds, links: Links<f64>, clearance: f64, horizon: f64) -> Self {
         Self {
             max_angle: bounds.max_angle.unwrap_or(horizon),
@@ -36,12 +36,12 @@ impl Barrier {
         self.max_angle
     }
 
-    /// How many margins there are.
+    /// Number of margins.
     pub(crate) fn count(&self) -> usize {
         if self.links.is_some() { MOST } else { 4 }
     }
 
-    /// All margins at a shape; entries beyond [`Barrier::count`] are not meant.
+    /// All margins at a shape; entries beyond [`Barrier::count`] are unused.
     pub(crate) fn margins(&self, phi: &Vector2<f64>) -> [Level; MOST] {
         let straight = |x: f64, y: f64| Level {
             value: self.max_angle - x * phi.x - y * phi.y,
@@ -62,7 +62,7 @@ impl Barrier {
         ]
     }
 
-    /// The smallest margin at a shape.
+    /// Smallest margin at a shape.
     pub(crate) fn least(&self, phi: &Vector2<f64>) -> f64 {
         let margins = self.margins(phi);
         margins
@@ -73,7 +73,7 @@ impl Barrier {
     }
 }
 
-/// Minus the soft minimum of the four lengths that are all positive where the links cross on this side.
+/// Minus the soft minimum of the four lengths that are all positive if the links cross on this side.
 fn apart(links: &Links<f64>, clearance: f64, side: f64, phi: &Vector2<f64>) -> Level {
     let (sin1, cos1) = phi.x.sin_cos();
     let (sin2, cos2) = phi.y.sin_cos();
@@ -109,8 +109,8 @@ fn apart(links: &Links<f64>, clearance: f64, side: f64, phi: &Vector2<f64>) -> L
         .fold(f64::INFINITY, f64::min);
     let weights = parts.map(|part| (-SHARPNESS * (part.0 - least)).exp());
     let total: f64 = weights.iter().sum();
-    // softmin = least − ln Σ exp(−k (g − least)) / k, never above the minimum, so the margin is never too large by rounding
-    // the other way: ln(parts) / k is taken off.
+    // softmin = least − ln Σ exp(−k (g − least)) / k is never above the minimum; ln(parts) / k is subtracted so that the
+    // margin is never too large.
     let soft = least - total.ln() / SHARPNESS;
     let mut gradient = Vector2::zeros();
     let mut hessian = Matrix2::zeros();

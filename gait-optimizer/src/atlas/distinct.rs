@@ -1,32 +1,32 @@
-//! Which curves are one and the same gait.
+//! Equivalence of curves that are the same gait.
 //!
-//! Invariant is the curve itself, not how it is run: shift of time, reversal (the swimmer swims the same way back) and the
-//! swimmer's own symmetries – left for right, Φ → −Φ, and, with side links that are alike, front for back,
-//! (φ₁, φ₂) → (φ₂, φ₁) – make one gait of several curves. Without bounds whole turns of a joint do as well.
+//! Curves are equivalent under a shift of time, reversal (the swimmer swims the same way back) and the symmetries of the swimmer:
+//! left–right, Φ → −Φ, and with equal side links front–back, (φ₁, φ₂) → (φ₂, φ₁). Without bounds, full turns of a joint are
+//! equivalent too.
 
 use nalgebra::Vector2;
 
 use crate::certificate::to_side;
 use crate::numerics::between;
 
-/// Points that a curve is compared at.
+/// Number of points at which curves are compared.
 const POINTS: usize = 96;
 
-/// A closed curve as evenly spaced points.
+/// Closed curve as evenly spaced points.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Outline(Vec<Vector2<f64>>);
 
-/// The maps of the plane of shapes that leave a swimmer the same.
+/// Symmetries of the swimmer in the plane of shapes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Symmetries {
-    /// The side links are alike.
+    /// The side links are equal.
     pub(crate) swap: bool,
-    /// Whole turns of a joint make no difference.
+    /// Full turns of a joint are equivalent.
     pub(crate) turns: bool,
 }
 
 impl Outline {
-    /// Of a closed polygon, last point = first.
+    /// Resamples a closed polygon, last point = first.
     pub(crate) fn new(polygon: &[Vector2<f64>]) -> Self {
         let mut lengths = vec![0.0];
         let mut total = 0.0;
@@ -91,12 +91,12 @@ impl Outline {
         least
     }
 
-    /// Whether the curve has both symmetries of the paper, to within the sag of the outline.
+    /// Returns `true` if the curve has both symmetries of the paper, within the accuracy of the outline.
     pub(crate) fn is_symmetric(&self) -> bool {
         self.asymmetry() < 0.01
     }
 
-    /// How far the curve is from having both symmetries of the paper: its images in φ₁ = φ₂ and in φ₁ = −φ₂.
+    /// Largest distance of the curve from its images in φ₁ = φ₂ and in φ₁ = −φ₂.
     fn asymmetry(&self) -> f64 {
         let mirrored = self.mapped(|phi| Vector2::new(phi.y, phi.x));
         let turned = self.mapped(|phi| -Vector2::new(phi.y, phi.x));
@@ -104,8 +104,8 @@ impl Outline {
     }
 }
 
-/// Puts entries with (nearly) the same outline together, in the order in which each was first seen: the first entry of every
-/// class, and which entries belong to it.
+/// Groups entries with (nearly) the same outline in the order of their first occurrence: the first entry of every class, and the
+/// entries that belong to it.
 pub(crate) fn classes(
     outlines: &[(f64, Outline)],
     symmetries: Symmetries,

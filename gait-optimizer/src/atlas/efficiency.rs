@@ -1,4 +1,4 @@
-//! The atlas of efficiency: closed extremals, free or along bounds, polished by multiple shooting.
+//! Atlas of efficiency gaits: closed extremals, free or along bounds, polished by multiple shooting.
 
 use nalgebra::{DMatrix, Vector2};
 use swimmer_model::{Fourier, Gait, GaitPoint, Harmonic, Model, Stroke};
@@ -41,7 +41,7 @@ impl MultiStart for Efficiency<'_> {
     }
 
     fn known(&self, problem: &AtlasProblem) -> Vec<OptimalGait> {
-        // The free gaits, shrunk into the bounds, are starts like others.
+        // The free gaits, scaled into the bounds, are additional starts.
         [Branch::Small, Branch::Large]
             .into_iter()
             .filter_map(|branch| {
@@ -84,7 +84,7 @@ impl Efficiency<'_> {
         gait(of, &extremal, problem.samples).ok()
     }
 
-    /// A symmetric gait again from its quarter, so that it starts and is told as those of the quarter solvers are.
+    /// Solves a symmetric gait again from its quarter, so that it has the start and the arcs of the quarter solvers.
     fn of_quarter(&self, start: &Shifted, closed: &OptimalGait) -> Option<OptimalGait> {
         let quarter = self.solved(start, true)?;
         let same = (quarter.efficiency / closed.efficiency - 1.0).abs();
@@ -113,7 +113,7 @@ fn series(coefficients: &DMatrix<f64>) -> Series {
     }
 }
 
-/// Where a curve crosses φ₁ = φ₂ > 0 farthest out; 0 where it never does.
+/// u of the outermost crossing of φ₁ = φ₂ > 0; 0 if there is none.
 fn home(curve: &Series) -> f64 {
     const LOOKS: u32 = 720;
     let place = |k: u32| f64::from(k) / f64::from(LOOKS);
@@ -136,7 +136,7 @@ fn home(curve: &Series) -> f64 {
     best.0
 }
 
-/// A curve from another start.
+/// Curve with another start.
 struct Shifted {
     curve: Series,
     by: f64,

@@ -1,8 +1,8 @@
-//! Newton's method for a closed curve with no net rotation inside a barrier: primal–dual interior point with exact second
-//! derivatives, damped until the Hessian on the constraint is positive definite.
+//! Primal–dual interior-point method for a closed curve without net rotation, with exact second derivatives, damped until the
+//! Hessian on the constraint is positive definite.
 //!
-//! The free shift of u along the curve leaves one direction flat; the damping takes care of it. A second-order correction
-//! along K⁻¹∇Δθ keeps full steps acceptable near the solution.
+//! The shift of u along the curve is a null direction, which the damping regularises. A second-order correction along K⁻¹∇Δθ keeps
+//! full steps acceptable near the solution.
 
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2, Vector4};
 
@@ -11,24 +11,24 @@ use super::objective::{Aim, Expansion};
 use crate::closed_curve::{Functional, Values, Weights, Workspace, column};
 use crate::region::Level;
 
-/// When to stop, and how close to the bounds.
+/// Stopping criteria and barrier parameters.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Settings {
     pub(crate) iterations: usize,
-    /// How much the objective may still be off its optimum, roughly.
+    /// Estimated distance of the objective from its optimum at which the iteration stops.
     pub(crate) residual: f64,
-    /// First and last weight of the barrier.
+    /// First and last barrier parameter.
     pub(crate) barrier: (f64, f64),
 }
 
-/// A curve at which the first variation vanishes.
+/// Curve at which the first variation vanishes.
 #[derive(Debug, Clone)]
 pub(crate) struct Stationary {
     pub(crate) coefficients: DMatrix<f64>,
     pub(crate) values: Values,
 }
 
-/// Room for one problem, used again for every start.
+/// Iteration with a workspace that is reused for every start.
 #[derive(Debug)]
 pub(crate) struct Newton<'a> {
     functional: Functional<'a>,
@@ -41,13 +41,13 @@ pub(crate) struct Newton<'a> {
     margins: Vec<[Level; MOST]>,
     pressure: Vec<[f64; MOST]>,
     local: Vec<Matrix2<f64>>,
-    /// Weights of the barrier, of what keeps steps short and of the rotation that is left, which change as an iteration goes on.
+    /// Barrier parameter; the next fields are the damping and the penalty of the rotation.
     weight: f64,
     damping: f64,
     penalty: f64,
 }
 
-/// One accepted point.
+/// Accepted iterate.
 #[derive(Debug, Clone, Copy)]
 struct Here {
     values: Values,
@@ -76,7 +76,7 @@ impl<'a> Newton<'a> {
         }
     }
 
-    /// The stationary curve that the iteration runs into from a start inside the barrier; none where it does not settle.
+    /// Iterates from a start inside the barrier to a stationary curve. Returns `None` if the iteration does not converge.
     pub(crate) fn solve(
         &mut self,
         aim: Aim,
@@ -133,7 +133,7 @@ impl<'a> Newton<'a> {
         None
     }
 
-    /// One step, with more damping until it is accepted.
+    /// Performs one step, with increasing damping until it is accepted.
     fn accepted(&mut self, from: &DMatrix<f64>, here: &Here, scale: f64) -> Option<(Step, New)> {
         for _ in 0..24 {
             if let Some(step) = self.step(here, self.damping * scale) {
@@ -152,8 +152,8 @@ impl<'a> Newton<'a> {
         None
     }
 
-    /// How much the objective could still fall, roughly: the squared gradient over what damping takes for curvature, with
-    /// the multiplier of Δθ that makes it least.
+    /// Estimated distance of the objective from its optimum: squared gradient over the curvature scale of the damping, with the
+    /// least-squares multiplier of Δθ.
     fn residual(&self, scale: f64) -> f64 {
         let (mut gg, mut ga, mut aa) = (0.0, 0.0, 0.0);
         for (i, (g, a)) in self.gradient.iter().zip(self.spin.iter()).enumerate() {
@@ -165,7 +165,7 @@ impl<'a> Newton<'a> {
         gg - ga * ga / aa
     }
 
-    /// Margins at the nodes of the curve; none where one is not positive.
+    /// Evaluates the margins at the nodes of the curve. Returns `None` if one is not positive.
     fn look_at_margins(&mut self) -> Option<()> {
         for (node, margins) in self.margins.iter_mut().enumerate() {
             *margins = self.barrier.margins(&column(&self.work.phi, node));
@@ -176,7 +176,7 @@ impl<'a> Newton<'a> {
         Some(())
     }
 
-    /// Gradient of the Lagrangian with the barrier's own multipliers, and of Δθ.
+    /// Gradient of the Lagrangian with the dual variables of the barrier, and gradient of Δθ.
     fn first_order(&mut self, here: &Here) {
         let mut weights = here.expansion.gradient;
         weights.z += here.rotation;
@@ -196,7 +196,7 @@ impl<'a> Newton<'a> {
         }
     }
 
-    /// The Hessian of the Lagrangian with the barrier's part.
+    /// Hessian of the Lagrangian with the barrier term.
     fn second_order(&mut self, here: &Here) {
         let count = self.barrier.count();
         for ((local, margins), pressures) in
@@ -229,14 +229,14 @@ impl<'a> Newton<'a> {
         }
     }
 
-    /// 2 max(κ, 0.1) over ∮|Φ′|² du: times a function's roughness this is what ln E has for a second derivative.
+    /// 2 max(κ, 0.1) over ∮|Φ′|² du; times the roughness of a function it is the scale of the second derivative of ln E.
     fn scale(&self) -> f64 {
         let length = self.work.slope.norm_squared() / self.functional.basis.nodes() as f64;
         let panels = self.functional.basis.panels() as f64;
         2.0 * self.aim.energy_weight.max(0.1) / (length * panels * panels).max(1e-12)
     }
 
-    /// The damped Newton step; none where the matrix is not positive definite.
+    /// Damped Newton step. Returns `None` if the matrix is not positive definite.
     fn step(&mut self, here: &Here, damping: f64) -> Option<Step> {
         let unknowns = self.gradient.len();
         self.matrix.copy_from(&self.work.hessian);
@@ -245,8 +245,8 @@ impl<'a> Newton<'a> {
             self.matrix[(i, i)] += damping * self.functional.basis.roughness(i / 2);
             trace += self.matrix[(i, i)].abs();
         }
-        // Any weight of the constraint's square gives the same step; it makes the matrix definite where only the constraint
-        // does.
+        // The weight of the squared constraint does not change the step; it makes the matrix definite in the direction of the
+        // constraint.
         let weight = 10.0 * trace / self.spin.norm_squared().max(1e-300) / unknowns as f64;
         self.matrix.ger(weight, &self.spin, &self.spin, 1.0);
         let matrix = std::mem::replace(&mut self.matrix, DMatrix::zeros(0, 0));
@@ -265,7 +265,7 @@ impl<'a> Newton<'a> {
         towards.axpy(-force, &unspin, 1.0);
         unspin /= pivot;
         let rotation = here.rotation + force - weight * off;
-        // The gradient holds the old multiplier's part, which is not the objective's.
+        // The gradient contains the old multiplier, which does not belong to the objective.
         let expected = -self.gradient.dot(&towards) - here.rotation * off;
         Some(Step {
             by: towards,
@@ -275,7 +275,7 @@ impl<'a> Newton<'a> {
         })
     }
 
-    /// The point after a step, cut to stay inside the barrier; none where the merit does not fall.
+    /// Point after a step, shortened to stay inside the barrier. Returns `None` if the merit function does not decrease.
     fn try_step(&mut self, from: &DMatrix<f64>, step: &Step, here: &Here) -> Option<New> {
         let merit_here = self.merit(&here.values, true)?;
         let mut length = 1.0;
@@ -283,7 +283,7 @@ impl<'a> Newton<'a> {
             let mut there = from.clone();
             add(&mut there, length, &step.by);
             let mut values = self.functional.values(&there, &mut self.work);
-            // A full step should leave no rotation.
+            // A full step should remove the rotation.
             let wanted = (1.0 - length) * here.values.rotation;
             let correction = wanted - values.rotation;
             if correction.abs() > 1e-13 && correction.abs() < 0.5 {
@@ -311,7 +311,8 @@ impl<'a> Newton<'a> {
         None
     }
 
-    /// Objective, barrier and penalty of the curve at hand; none outside the barrier. `old` takes the margins at hand.
+    /// Merit function: objective, barrier and penalty of the present curve. Returns `None` outside the barrier. `old` uses the stored
+    /// margins.
     fn merit(&self, values: &Values, old: bool) -> Option<f64> {
         let count = self.barrier.count();
         let mut logs = 0.0;
@@ -322,7 +323,7 @@ impl<'a> Newton<'a> {
             }
             let margins = self.barrier.margins(&column(&self.work.phi, node));
             for (margin, before) in margins.iter().zip(before).take(count) {
-                // No margin may shrink to a hundredth at once.
+                // Fraction-to-boundary rule: no margin may shrink to one percent in one step.
                 if margin.value.is_nan() || margin.value <= 0.01 * before.value {
                     return None;
                 }
@@ -334,7 +335,7 @@ impl<'a> Newton<'a> {
         merit.is_finite().then_some(merit)
     }
 
-    /// New multipliers of the margins.
+    /// Updates the dual variables of the margins.
     fn press(&mut self, step: &Step, new: &New) {
         let count = self.barrier.count();
         for (node, (pressures, margins)) in self.pressure.iter_mut().zip(&self.margins).enumerate()
@@ -364,11 +365,11 @@ fn add(coefficients: &mut DMatrix<f64>, length: f64, step: &DVector<f64>) {
 #[derive(Debug)]
 struct Step {
     by: DVector<f64>,
-    /// The change that takes one unit of rotation away at the least cost.
+    /// Change that removes one unit of rotation at the least cost.
     unspin: DVector<f64>,
-    /// The new multiplier of Δθ.
+    /// New multiplier of Δθ.
     rotation: f64,
-    /// What the objective and the barrier gain to first order: about twice what they will.
+    /// First-order change of objective and barrier, about twice the actual one.
     expected: f64,
 }
 

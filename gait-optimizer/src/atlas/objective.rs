@@ -1,11 +1,11 @@
-//! What a closed curve is sought for, as a function of what it brings and costs.
+//! Objective of a closed curve as a function of displacement, rotation and energy.
 
 use nalgebra::{Matrix4, Vector4};
 
 use crate::closed_curve::Values;
 
-/// −ln |d|² + κ ln ∮P du, to be made small, with no net rotation. κ = 1 is Lighthill's efficiency; κ → 0 the displacement, whose
-/// optima κ keeps from curling.
+/// −ln |d|² + κ ln ∮P du, to be minimised without net rotation. κ = 1 is Lighthill's efficiency, κ → 0 the displacement; a small κ
+/// prevents curls of the displacement optima.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Aim {
     /// κ.

@@ -1,4 +1,4 @@
-//! From random starts to the certified optima of one objective: coarse curves, classes of them, polish, classes again.
+//! Multi-start pipeline from random starts to certified optima: coarse curves, classes, polish, classes again.
 
 use nalgebra::{DMatrix, Vector2};
 use swimmer_files::AnyGait;
@@ -16,39 +16,38 @@ use crate::optimal_gait::OptimalGait;
 use crate::parallel::{Watch, in_parallel};
 use crate::region::Region;
 
-/// Coarse curves this near to each other \[rad\], with values this near, are one.
+/// Distance \[rad\] and relative difference of the values below which coarse curves are equal.
 const SAME_COARSE: (f64, f64) = (1e-3, 0.05);
-/// The same for polished gaits.
+/// Distance \[rad\] and relative difference of the values below which polished gaits are equal.
 const SAME: (f64, f64) = (1e-7, 0.02);
-/// A curve that comes this near to the horizon has left \[rad\].
+/// Distance from the horizon below which a curve counts as diverged \[rad\].
 const LEAVING: f64 = 0.3;
 
-/// Sides of the polygon that a coarse curve is looked at as.
+/// Number of sides of the polygon that represents a coarse curve.
 const SIDES: usize = 240;
 
-/// About what share of the work the starts are; the rest is polish.
+/// Approximate share of the starts in the work; the rest is polish.
 const STARTS: f64 = 0.5;
 
-/// How one objective is sought.
+/// Search for one objective.
 pub(super) trait MultiStart: Sync {
-    /// κ of the coarse objective, one after the other.
+    /// Sequence of κ of the coarse objective.
     const ENERGY_WEIGHTS: &'static [f64];
-    /// How closely the coarse curves are solved.
+    /// Settings of the coarse solution.
     const SETTINGS: Settings;
-    /// Whether only simple curves count; the coarse curve is the last simple one.
+    /// `true` if only simple curves count; the coarse curve is the last simple one.
     const SIMPLE: bool;
 
-    /// What is to be large.
+    /// Value of a gait, to be maximised.
     fn value(gait: &OptimalGait) -> f64;
 
-    /// The same of a stroke of a swimmer of unit length.
+    /// Value of a stroke of a swimmer with unit length.
     fn value_of(stroke: &Stroke<f64>) -> f64;
 
-    /// Gaits known from elsewhere, to start from beside the random ones, with all that their certificates need
-    /// to be listed.
+    /// Known gaits that are additional starts, with complete certificates.
     fn known(&self, problem: &AtlasProblem) -> Vec<OptimalGait>;
 
-    /// The certified gait that a coarse curve, run counter-clockwise, leads to.
+    /// Polishes and certifies a coarse curve, run counter-clockwise.
     fn polished(
         &self,
         functional: &Functional<'_>,
@@ -57,7 +56,7 @@ pub(super) trait MultiStart: Sync {
     ) -> Option<OptimalGait>;
 }
 
-/// Where a start ended.
+/// Result of a start.
 enum Ended {
     Nowhere,
     Left,
@@ -88,7 +87,7 @@ pub(super) fn run<S: MultiStart>(
         StartCurves::Random => objective.known(problem),
         StartCurves::OffCentre => Vec::new(),
     };
-    // What is certified for these very bounds is in the atlas, wherever its coarse curve leads.
+    // A known gait that is certified for the same bounds is listed in any case.
     let kept = |known: &OptimalGait| known.bounds == problem.bounds && known.certificate.pass();
     let is_kept = |index: usize| {
         let known = known.get(index.wrapping_sub(problem.starts));
@@ -153,7 +152,7 @@ pub(super) fn run<S: MultiStart>(
         let values = [atlas.best_uncertified, value];
         atlas.best_uncertified = values.into_iter().flatten().reduce(f64::max);
     }
-    // A known gait of these bounds that is a saddle among all curves is not listed; how far it carries is told.
+    // A known gait that is a saddle among all curves is not listed; its displacement is reported.
     let saddles = known
         .iter()
         .filter(|known| known.bounds == problem.bounds && !kept(known));
@@ -166,12 +165,12 @@ pub(super) fn run<S: MultiStart>(
     atlas
 }
 
-/// Whether a closed polygon turns once and never crosses itself.
+/// Returns `true` if a closed polygon turns once and does not cross itself.
 fn is_simple(points: &[Vector2<f64>]) -> bool {
     (turning_number(points).abs() - 1.0).abs() < 1e-6 && crossings(points) == 0
 }
 
-/// What a coarse curve brings, if it can be swum.
+/// Value of a coarse curve. Returns `None` if it cannot be integrated.
 fn value_of<S: MultiStart>(model: &Model<f64>, points: &[Vector2<f64>]) -> Option<f64> {
     let sides = points.len().saturating_sub(1) as f64;
     let u: Vec<f64> = (0..points.len()).map(|k| k as f64 / sides).collect();
@@ -179,7 +178,7 @@ fn value_of<S: MultiStart>(model: &Model<f64>, points: &[Vector2<f64>]) -> Optio
     Some(S::value_of(&swim(model, &curve, &Tolerance::default())))
 }
 
-/// One entry for each gait, best first.
+/// Merges equal gaits and sorts them, best first.
 fn distinct<S: MultiStart>(gaits: &[(OptimalGait, usize)], symmetries: Symmetries) -> Vec<Optimum> {
     let outlines: Vec<(f64, Outline)> = gaits
         .iter()
@@ -188,7 +187,7 @@ fn distinct<S: MultiStart>(gaits: &[(OptimalGait, usize)], symmetries: Symmetrie
     let mut optima = Vec::new();
     for class in classes(&outlines, symmetries, SAME.0, SAME.1) {
         let found = class.iter().filter_map(|&index| gaits.get(index));
-        // A kept gait that leads to another one than itself found both.
+        // A known gait whose start leads to another gait found both.
         let found = found.map(|(_, found)| *found).sum::<usize>().max(1);
         if let Some((gait, _)) = class.first().and_then(|&index| gaits.get(index)) {
             optima.push(Optimum {
@@ -209,7 +208,7 @@ pub(super) fn distance(gait: &OptimalGait) -> f64 {
     x.hypot(y)
 }
 
-/// Leads one start to a coarse optimum.
+/// Solves one start to a coarse optimum.
 fn coarse<S: MultiStart>(
     newton: &mut Newton<'_>,
     basis: &Basis,

@@ -1,4 +1,4 @@
-//! From a coarse optimum of displacement to guesses for its closed loop: where a loop may be opened, and the momentum there.
+//! Initial guesses for the closed loop near a coarse displacement optimum: the point at which the loop is opened, and the momentum.
 
 use nalgebra::{DMatrix, Vector2};
 use swimmer_model::Model;
@@ -7,12 +7,12 @@ use crate::closed_curve::{Functional, column};
 use crate::loops::{Guess, Section};
 use crate::region::Region;
 
-/// A coarse node nearer than this to a bound lies on it [rad].
+/// Distance from a bound below which a coarse node is on it \[rad\].
 const ON_BOUND: f64 = 0.06;
-/// Places where a loop without a bound arc is opened.
+/// Number of points at which a loop without a bound arc is opened.
 const FREE_GATES: usize = 3;
 
-/// Guesses for a coarse curve that runs counter-clockwise, the most promising first.
+/// Returns guesses for a coarse curve that runs counter-clockwise, the most promising first.
 pub(crate) fn guesses(
     functional: &Functional<'_>,
     model: &Model<f64>,
@@ -64,7 +64,7 @@ pub(crate) fn guesses(
         });
     }
     if found.is_empty() {
-        // Where the row of the rotation is strong, c is known best.
+        // c is most accurate where the row of the rotation is large.
         let mut order: Vec<(f64, usize)> = (0..nodes)
             .map(|node| {
                 let f = model.first_derivatives(&shape(node)).curvature();

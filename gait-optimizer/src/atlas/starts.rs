@@ -1,5 +1,5 @@
-//! Random closed curves to start from: Fourier series of order 1 to 4, of several sizes, centres and aspects, with and
-//! without the paper's two symmetries. Each start has its own stream of the generator, so none depends on another.
+//! Random closed curves as starts: Fourier series of order 1 to 4, of several sizes, centres and aspects, with and without the
+//! paper's two symmetries. Each start has its own stream of the generator and is independent of the others.
 
 use nalgebra::{DMatrix, Vector2};
 use rand::{RngExt, SeedableRng};
@@ -13,10 +13,10 @@ use crate::optimal_gait::OptimalGait;
 
 /// Highest order of a start.
 const MOST_HARMONICS: usize = 4;
-/// A start keeps this share of the way to the bounds.
+/// Scale of a start relative to the distance of the bounds.
 const INSIDE: f64 = 0.97;
 
-/// Coefficients of a start in a Fourier basis, inside the barrier.
+/// Returns the coefficients of a start in a Fourier basis, inside the barrier.
 pub(crate) fn start(basis: &Basis, barrier: &Barrier, seed: u64, index: usize) -> DMatrix<f64> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream(index as u64);
@@ -63,7 +63,7 @@ pub(crate) fn start(basis: &Basis, barrier: &Barrier, seed: u64, index: usize) -
     curve
 }
 
-/// A circle round a shape with φ₁ = −φ₂, half way out, on either side and of two sizes.
+/// Circle around a shape with φ₁ = −φ₂, half way to the bound, on either side and in two sizes.
 pub(crate) fn off_centre(basis: &Basis, barrier: &Barrier, index: usize) -> DMatrix<f64> {
     let reach = barrier.max_angle().min(std::f64::consts::PI);
     let side = if index.is_multiple_of(2) { 1.0 } else { -1.0 };
@@ -77,7 +77,7 @@ pub(crate) fn off_centre(basis: &Basis, barrier: &Barrier, index: usize) -> DMat
     curve
 }
 
-/// A gait's cycle as a series of the basis's order, shrunk into the barrier.
+/// Fits a series of the basis's order to a gait's cycle and scales it into the barrier.
 pub(crate) fn fitted(gait: &OptimalGait, basis: &Basis, barrier: &Barrier) -> DMatrix<f64> {
     const SAMPLES: usize = 512;
     let u = (0..=SAMPLES).map(|k| k as f64 / SAMPLES as f64);
@@ -88,7 +88,7 @@ pub(crate) fn fitted(gait: &OptimalGait, basis: &Basis, barrier: &Barrier) -> DM
     through(&points, basis, barrier)
 }
 
-/// A closed curve through these shapes, each with its u from 0 to 1, as a series of the basis's order, shrunk into the barrier.
+/// Fits a series of the basis's order to shapes with their u from 0 to 1 and scales it into the barrier.
 pub(crate) fn through(
     points: &[(f64, Vector2<f64>)],
     basis: &Basis,
@@ -110,7 +110,7 @@ pub(crate) fn through(
     curve
 }
 
-/// Scales a curve about the straight swimmer until it lies inside the barrier.
+/// Scales a curve about the straight swimmer until it is inside the barrier.
 pub(crate) fn shrink_into(curve: &mut DMatrix<f64>, basis: &Basis, barrier: &Barrier) {
     for _ in 0..200 {
         let inside = (0..basis.nodes()).all(|node| {

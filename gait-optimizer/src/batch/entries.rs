@@ -1,21 +1,21 @@
-//! What a batch can be asked for: A and W at a shape with derivatives of them, as blocks, and a block as a list of entries.
+//! Values that a batch can compute: A and W with their derivatives, as blocks of entries.
 
 use nalgebra::{Matrix2, Matrix3x2};
 use swimmer_model::{FirstDerivatives, Model, SecondDerivatives};
 
-/// A and W at a shape, or a derivative of them.
+/// A and W at a shape, or one of their derivatives.
 pub(crate) type Block = (Matrix3x2<f64>, Matrix2<f64>);
 
-/// Entries of a block: A row by row, then W's upper triangle.
+/// Number of entries of a block: A by rows, then the upper triangle of W.
 pub(super) const ENTRIES: usize = 9;
 
 /// B blocks at a shape.
 pub(crate) trait Blocks<const B: usize> {
-    /// What they stand for.
+    /// Type of the assembled value.
     type One;
-    /// They, from sine and cosine of φ₁ and of φ₂.
+    /// Computes the blocks from sine and cosine of φ₁ and of φ₂.
     fn at(model: &Model<f64>, turns: [(f64, f64); 2]) -> [Block; B];
-    /// Put together.
+    /// Assembles the blocks.
     fn one(blocks: [Block; B]) -> Self::One;
 }
 

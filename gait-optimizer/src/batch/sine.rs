@@ -1,4 +1,4 @@
-//! Sine and cosine as a loop wants them: without a branch, and to the last digit those of `libm`, which the model takes.
+//! Branch-free sine and cosine for vectorised loops, equal to those of `libm` to the last digit.
 
 use swimmer_model::Scalar;
 
@@ -22,8 +22,8 @@ pub(super) fn sines_and_cosines<const N: usize>(angles: &[f64; N]) -> ([f64; N],
     (sines, cosines)
 }
 
-/// Sine and cosine by the reduction and the polynomials of `libm` (FreeBSD's `e_rem_pio2`, `k_sin` and `k_cos`), and whether the angle
-/// is plain: not so near to a multiple of π/4, nor so large, that `libm` goes another way.
+/// Sine and cosine by the reduction and the polynomials of `libm` (FreeBSD's `e_rem_pio2`, `k_sin` and `k_cos`). The flag is `false` if
+/// the angle is too large or too near a multiple of π/4, for which `libm` takes another path.
 #[inline(always)]
 #[allow(clippy::excessive_precision)] // as in their source
 fn sin_cos(angle: f64) -> (f64, f64, bool) {
@@ -48,7 +48,7 @@ fn sin_cos(angle: f64) -> (f64, f64, bool) {
         + z * (-1.984_126_982_985_794_931_34e-4 + z * 2.755_731_370_707_006_767_89e-6)
         + z * zz * (-2.505_076_025_340_686_341_95e-8 + z * 1.589_690_995_211_550_102_21e-10);
     let v = z * x;
-    // Where nothing was taken away `libm` sums in another order.
+    // Without a reduction `libm` sums in another order.
     let within = x + v * (S1 + z * p);
     let reduced = x - ((z * (0.5 * y - v * p) - y) - v * S1);
     let sin = if n == 0.0 { within } else { reduced };
@@ -62,7 +62,7 @@ fn sin_cos(angle: f64) -> (f64, f64, bool) {
     let w = 1.0 - half;
     let cos = w + (((1.0 - w) - half) + (z * p - x * y));
 
-    // Bits, not branches: all ones where sine and cosine change places.
+    // Bit mask instead of a branch: all ones if sine and cosine are exchanged.
     let swap = (quadrant & 1).wrapping_neg();
     let exchange = (sin.to_bits() ^ cos.to_bits()) & swap;
     let s = f64::from_bits(sin.to_bits() ^ exchange);

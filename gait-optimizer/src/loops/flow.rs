@@ -1,4 +1,4 @@
-//! One orbit: arc after arc, each ended by an event, until the start is met again.
+//! Integration of an orbit: arc after arc, each ended by an event, until the orbit returns to its start.
 
 use nalgebra::Vector2;
 use swimmer_model::Model;
@@ -8,18 +8,18 @@ use crate::momentum::{Flow, Momentum, Motion, State, Track, shape};
 use crate::region::Region;
 use crate::runge_kutta::{Point, StepControl, exact_step};
 
-/// Most arcs of an orbit.
+/// Largest number of arcs of an orbit.
 const MOST_ARCS: usize = 24;
-/// Longest orbit \[rad\].
+/// Largest length of an orbit \[rad\].
 const LONGEST: f64 = 60.0;
-/// Longest step \[rad\].
+/// Largest step \[rad\].
 const LONGEST_STEP: f64 = 0.15;
-/// An orbit that reaches its start's bound this near to the start has returned \[rad\].
+/// Distance from the start, along its bound, within which an orbit has returned \[rad\].
 const AT_START: f64 = 1e-7;
-/// The height may start this much below zero on a bound, over L.
+/// Largest negative height at the start of an arc on a bound, over L.
 const SLACK: f64 = 1e-9;
 
-/// An orbit that came back.
+/// Orbit that returned to its start.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ClosedOrbit {
     pub(crate) momentum: Momentum,
@@ -27,7 +27,7 @@ pub(crate) struct ClosedOrbit {
     pub(crate) end: State,
 }
 
-/// What ends an orbit.
+/// Condition for the return of an orbit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum ReturnCondition {
     /// Leaving the bound with this index near the start.
@@ -38,28 +38,28 @@ pub(crate) enum ReturnCondition {
     Along(usize),
 }
 
-/// Where an orbit begins and what ends it.
+/// Start and end condition of an orbit.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Launch<'a> {
     pub(crate) model: &'a Model<f64>,
     pub(crate) region: &'a Region,
     pub(crate) momentum: Momentum,
     pub(crate) start: Vector2<f64>,
-    /// What the first arc runs along.
+    /// Kind of the first arc.
     pub(crate) first: Motion,
     pub(crate) until: ReturnCondition,
     /// Direction of the curve at the start.
     pub(crate) ahead: Vector2<f64>,
-    /// No end before this much of the curve \[rad\] …
+    /// Least length of the orbit \[rad\].
     pub(crate) shortest: f64,
-    /// … and no end farther than this from the start \[rad\].
+    /// Largest distance of the end from the start \[rad\].
     pub(crate) near: f64,
-    /// Of the integration.
+    /// Tolerance of the integration.
     pub(crate) tolerance: f64,
 }
 
 impl Launch<'_> {
-    /// Runs the orbit; none where it does not come back.
+    /// Integrates the orbit. Returns `None` if it does not return.
     pub(crate) fn orbit(&self) -> Option<ClosedOrbit> {
         let start = [self.start.x, self.start.y, 0.0, 0.0, 0.0, 0.0];
         let tracer = Tracer {
@@ -100,7 +100,7 @@ impl Launch<'_> {
         })
     }
 
-    /// Whether an arc's end is the orbit's, which is so long \[rad\].
+    /// Returns `true` if the end of an arc is the end of the orbit with this length \[rad\].
     fn returns(&self, event: Event<()>, leg: &Leg, length: f64) -> bool {
         let off = (shape(&leg.to) - self.start).norm();
         let is_start = match event {
@@ -115,7 +115,7 @@ impl Launch<'_> {
         is_start && length > self.shortest
     }
 
-    /// A motion, where it may follow in a state: on a bound the height must rise, or be positive already.
+    /// Returns the motion if it is admissible in a state: on a bound the height must be positive or rising.
     fn entered(&self, motion: Motion, at: &State) -> Option<Motion> {
         let flow = Flow {
             model: self.model,
@@ -131,7 +131,7 @@ impl Launch<'_> {
 }
 
 impl EndCondition for Launch<'_> {
-    /// The line across the curve at the start is crossed.
+    /// Crossing of the line at the start.
     type End = ();
 
     fn watched(&self, motion: &Motion) -> impl Iterator<Item = ()> {
@@ -153,10 +153,10 @@ impl EndCondition for Launch<'_> {
     }
 }
 
-/// What follows when a bound is met.
+/// Motion after a bound is reached.
 fn along(region: &Region, index: usize, phi: &Vector2<f64>, before: &Motion) -> Option<Motion> {
     let track = Track::new(region, index, phi, 1.0)?;
-    // From one straight bound to the next the way must lead on inside both.
+    // From one straight bound to the next, the motion must stay inside both.
     if let Motion::Along(before) = before
         && before.wall.edge().is_some()
         && before.direction(phi).perp(&track.direction(phi)) <= 0.0

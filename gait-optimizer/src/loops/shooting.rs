@@ -1,4 +1,4 @@
-//! Closing a loop: Gauss–Newton on the place of the start and the direction of the momentum.
+//! Shooting for a closed loop: Gauss–Newton iteration on the start point and the direction of the momentum.
 
 use nalgebra::{Matrix3x2, Vector2, Vector3};
 use swimmer_model::Model;
@@ -8,37 +8,37 @@ use crate::momentum::{Momentum, Motion, pose, shape};
 use crate::numerics::damped;
 use crate::region::Region;
 
-/// A one-parameter family of starts.
+/// One-parameter family of starts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Section {
-    /// The start for parameter 0.
+    /// Start for parameter 0.
     pub(crate) at: Vector2<f64>,
-    /// How it moves with the parameter.
+    /// Derivative of the start by the parameter.
     pub(crate) along: Vector2<f64>,
-    /// The bound that the start lies on; the curve leaves it there.
+    /// Bound that contains the start, which the curve leaves there.
     pub(crate) bound: Option<usize>,
 }
 
-/// A loop to close.
+/// Initial guess for a closed loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Guess {
     pub(crate) section: Section,
     /// Angle of p against the heading at the section's start \[rad\].
     pub(crate) angle: f64,
-    /// About how long the loop is \[rad\].
+    /// Approximate length of the loop \[rad\].
     pub(crate) length: f64,
 }
 
-/// Place along the section and angle of p against the heading at the start \[rad\].
+/// Unknowns: parameter of the section, and angle of p against the heading at the start \[rad\].
 type At = Vector2<f64>;
 
 /// Tolerances of the integration.
 const COARSE: f64 = 1e-8;
 const FINE: f64 = 1e-13;
 const ROUNDS: usize = 30;
-/// Longest steps in place and angle.
+/// Largest step in both unknowns.
 const STRIDE: f64 = 0.12;
-/// Where the coarse integration gives way to the fine one, and where it is enough.
+/// Residual at which the fine integration starts; the next constant is the residual at which the iteration stops.
 const NEAR: f64 = 1e-4;
 const CLOSED: f64 = 1e-11;
 
@@ -48,7 +48,7 @@ struct Problem<'a> {
     guess: Guess,
 }
 
-/// Closes a loop from a guess.
+/// Closes a loop from an initial guess.
 pub(crate) fn close(model: &Model<f64>, region: &Region, guess: Guess) -> Option<ClosedOrbit> {
     let problem = Problem {
         model,
@@ -91,7 +91,7 @@ impl Problem<'_> {
         }
     }
 
-    /// Place, heading and the part of the displacement across p that the orbit ends with.
+    /// Residuals at the end of the orbit: position, heading, and displacement across p.
     fn shoot(&self, at: &At, tolerance: f64) -> Option<(Vector3<f64>, ClosedOrbit)> {
         let section = &self.guess.section;
         let start = self.start(at);
@@ -124,7 +124,7 @@ impl Problem<'_> {
         miss.norm().is_finite().then_some((miss, orbit))
     }
 
-    /// The Gauss–Newton step, by differences.
+    /// Gauss–Newton step with a finite-difference Jacobian.
     fn step(&self, at: &At, miss: &Vector3<f64>, tolerance: f64) -> Option<Vector2<f64>> {
         let h = if tolerance < 1e-10 { 1e-6 } else { 1e-4 };
         let column = |way: Vector2<f64>| {

@@ -1,4 +1,4 @@
-//! A closed loop traced once more from any of its points, sampled at constant power.
+//! Sampling of a closed loop from any of its points at constant power.
 
 use swimmer_model::Model;
 
@@ -10,18 +10,18 @@ use crate::numerics::locate;
 use crate::runge_kutta::{Point, StepControl, advance};
 
 const CONTROL: StepControl = StepControl::to(1e-13);
-/// Samples fall on the quarters of the cycle, where a symmetric loop has its images meet.
+/// Quarters of the cycle, which are sample points, since the images of a symmetric loop meet there.
 const QUARTERS: [f64; 3] = [0.25, 0.5, 0.75];
-/// Arcs below this share of the cycle are crossings of a corner, not arcs.
+/// Share of the cycle below which an arc is only a crossing of a corner.
 const LASTING: f64 = 1e-9;
 
-/// Traces a loop with about this many samples, from where it crosses φ₁ = φ₂ > 0 farthest out, or from its own start.
+/// Samples a loop with about this number of samples, from its outermost crossing of φ₁ = φ₂ > 0, or from its own start.
 pub(crate) fn traced(model: &Model<f64>, orbit: &ClosedOrbit, samples: usize) -> Option<Cycle> {
     let home = home(model, orbit, &lasting(orbit));
     traced_from(model, orbit, home, samples)
 }
 
-/// Traces a loop from a state on one of its lasting legs, or from its own start.
+/// Samples a loop from a state on one of its arcs of finite length, or from its own start.
 pub(crate) fn traced_from(
     model: &Model<f64>,
     orbit: &ClosedOrbit,
@@ -39,9 +39,9 @@ pub(crate) fn traced_from(
         route.push((leg.motion, leg.to[5] - leg.from[5]));
     }
     route.push((leg.motion, state[5] - leg.from[5]));
-    // The first and the last leg may be parts of one.
+    // The first and the last arc may be parts of one arc.
     route.retain(|(_, length)| *length > LASTING * total);
-    // An arc that was cut where the orbit began is whole.
+    // Merge an arc that the start of the orbit splits.
     route.dedup_by(|next, leg| {
         let whole = next.0 == Motion::Singular && leg.0 == Motion::Singular;
         leg.1 += if whole { next.1 } else { 0.0 };
@@ -53,7 +53,7 @@ pub(crate) fn traced_from(
     Some(samples.closed())
 }
 
-/// Where the loop crosses φ₁ = φ₂ > 0: the leg, and the state there.
+/// Crossing of φ₁ = φ₂ > 0: index of the arc, and state.
 fn home(model: &Model<f64>, orbit: &ClosedOrbit, legs: &[Leg]) -> Option<(usize, State)> {
     const LOOKS: usize = 48;
     let mut best: Option<(usize, State)> = None;
@@ -87,7 +87,7 @@ fn crossing(system: &ByPower<'_>, from: &Point<6>, step: f64) -> Option<State> {
     locate([0.5 * step, step], 1e-15, at, off).map(|(there, _)| there.z)
 }
 
-/// Arcs that last.
+/// Arcs of finite length.
 fn lasting(orbit: &ClosedOrbit) -> Vec<Leg> {
     let total = orbit.end[5];
     let legs = orbit.legs.iter();

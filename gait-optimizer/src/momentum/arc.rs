@@ -1,4 +1,4 @@
-//! The flow of an arc of most displacement, for quarters and for closed curves: along the zero of the height, or along a bound.
+//! Dynamics of an arc of greatest displacement, along the zero of the height or along a bound.
 
 use nalgebra::{Matrix2, Matrix3x2, Vector2};
 use swimmer_model::Model;
@@ -6,7 +6,7 @@ use swimmer_model::Model;
 use super::{Height, Momentum, Motion};
 use crate::runge_kutta::System;
 
-/// State along an arc: φ₁, φ₂, x, y, θ (lengths over L) and the power length ∫√P over the arc.
+/// State along an arc: φ₁, φ₂, x, y, θ (lengths over L) and the power length ∫√P of the arc.
 pub(crate) type State = [f64; 6];
 
 /// Joint angles of a state.
@@ -43,17 +43,17 @@ pub(crate) fn pose_rates(
     ]
 }
 
-/// The dynamics of an arc with |u| = 1 (paper, the constraint on the shape's rate of change).
+/// Dynamics of an arc with |u| = 1 (paper, constraint on the rate of the shape).
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Flow<'a> {
-    /// The swimmer with L = 1.
+    /// Model of the swimmer with L = 1.
     pub(crate) model: &'a Model<f64>,
     pub(crate) momentum: Momentum,
     pub(crate) motion: Motion,
 }
 
 impl Flow<'_> {
-    /// The height at a state.
+    /// Height at a state.
     pub(crate) fn height(&self, z: &State) -> Height {
         self.momentum.evaluate(self.model, &shape(z), &pose(z)).0
     }

@@ -1,21 +1,21 @@
-//! What an arc runs along: free, or along a bound one way or the other, piece by piece.
+//! Kind of an arc: singular, or along a piece of a bound in either direction.
 
 use nalgebra::Vector2;
 use swimmer_files::ArcKind;
 
 use crate::region::{Bound, Piece, Region};
 
-/// What an arc runs along.
+/// Kind of an arc.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Motion {
-    /// The singular control.
+    /// Singular arc.
     Singular,
-    /// A bound of the region.
+    /// Arc along a bound of the region.
     Along(Track),
 }
 
 impl Motion {
-    /// The bound that is run along; none for the singular control.
+    /// Active bound. Returns `None` for a singular arc.
     pub(crate) fn track(&self) -> Option<&Track> {
         match self {
             Self::Singular => None,
@@ -23,18 +23,18 @@ impl Motion {
         }
     }
 
-    /// What an arc of it is called.
+    /// Kind of the arc in a gait file.
     pub(crate) fn kind(&self) -> ArcKind {
         self.track()
             .map_or(ArcKind::Singular, |track| track.wall.kind())
     }
 
-    /// Place of the bound that is run along; none for the singular control.
+    /// Index of the active bound. Returns `None` for a singular arc.
     pub(crate) fn bound(&self) -> Option<usize> {
         self.track().map(|track| track.index)
     }
 
-    /// What is left of the bound's piece, with its slope in Φ; none where it does not end.
+    /// Remaining length of the bound's piece, with its gradient by Φ. Returns `None` if the piece does not end.
     pub(crate) fn piece_end(&self, phi: &Vector2<f64>) -> Option<(f64, Vector2<f64>)> {
         match self.track()?.wall {
             Bound::Clearance(clearance) => clearance.piece_end(clearance.piece(phi), phi),
@@ -42,25 +42,25 @@ impl Motion {
         }
     }
 
-    /// Along the bound's next piece, where there is one.
+    /// Motion along the next piece of the bound. Returns `None` if there is none.
     pub(crate) fn next_piece(&self) -> Option<Self> {
         self.track()?.next_piece().map(Self::Along)
     }
 }
 
-/// A bound with the way that it is run.
+/// Active bound with its direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Track {
-    /// Place of the bound in the region.
+    /// Index of the bound in the region.
     pub(crate) index: usize,
-    /// Held to the piece that is run along.
+    /// Bound, restricted to the active piece.
     pub(crate) wall: Bound,
-    /// 1 with the region on the left, −1 with the region on the right.
+    /// 1 if the region is on the left, −1 if it is on the right.
     pub(crate) way: f64,
 }
 
 impl Track {
-    /// Along the piece of a bound that a shape lies on; none where the region has no such bound.
+    /// Track along the piece of a bound that contains a shape. Returns `None` if the region has no such bound.
     pub(crate) fn new(region: &Region, index: usize, phi: &Vector2<f64>, way: f64) -> Option<Self> {
         Some(Self {
             index,
@@ -69,7 +69,7 @@ impl Track {
         })
     }
 
-    /// The other way.
+    /// Reverses the direction.
     pub(crate) fn back(self) -> Self {
         Self {
             way: -self.way,
@@ -77,7 +77,7 @@ impl Track {
         }
     }
 
-    /// Unit direction of motion; smooth also beyond the piece's end.
+    /// Unit direction of motion, smooth beyond the end of the piece.
     pub(crate) fn direction(&self, phi: &Vector2<f64>) -> Vector2<f64> {
         self.wall.tangent(phi) * self.way
     }
@@ -88,7 +88,7 @@ impl Track {
         Vector2::new(-along.y, along.x)
     }
 
-    /// The piece after this one. Round a forbidden zone they follow each other as front tip, tips, back tip.
+    /// Next piece. Around a set of crossing shapes the order is front tip, tips, back tip.
     pub(crate) fn next_piece(&self) -> Option<Self> {
         let Bound::Clearance(clearance) = self.wall else {
             return None;

@@ -1,4 +1,4 @@
-//! The height against differences, and against the paper's function.
+//! Tests of the height against finite differences and against the paper's switching function.
 
 use super::arc::pose_rates;
 use super::*;
@@ -9,7 +9,7 @@ fn height(model: &Model<f64>, momentum: Momentum, phi: &Vector2<f64>, pose: &[f6
     momentum.at(pose).dot(&curvature)
 }
 
-/// The gradient is the height's change along a short stretch of the dynamics.
+/// The gradient is the change of the height along a short interval of the dynamics.
 #[test]
 fn the_gradient_is_the_derivative_along_each_joint() {
     let model = Model::new(&Swimmer::<f64>::purcell()).unwrap();
@@ -21,7 +21,7 @@ fn the_gradient_is_the_derivative_along_each_joint() {
         let mut direction = Vector2::zeros();
         direction[joint] = 1.0;
         let moved = |h: f64| {
-            // Midpoint rule: second order, and so is the central difference.
+            // The midpoint rule and the central difference are both of second order.
             let half = |phi: &Vector2<f64>, pose: &[f64; 3], from: &[f64; 3], h: f64| {
                 let (a, w) = model.connection_and_power(phi);
                 let rates = pose_rates(&a, &w, pose[2], &direction);
@@ -45,7 +45,7 @@ fn the_gradient_is_the_derivative_along_each_joint() {
     }
 }
 
-/// The height is minus the paper's F, written out there in g, h, f, q with λ₃ = 1.
+/// The height is minus the paper's F, expressed there in g, h, f, q with λ₃ = 1.
 #[test]
 fn the_height_is_minus_the_papers_switching_function() {
     let model = Model::new(&Swimmer::<f64>::robot()).unwrap();
