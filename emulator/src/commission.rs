@@ -1,4 +1,8 @@
-//! What a laboratory does once with a new robot: tell it its servos and its body, over the link like anybody.
+//! First set-up of a new robot: its servos and its body, over the link, with the bench jumper closed for a moment.
+
+use std::io;
+use std::ops::ControlFlow;
+use std::time::Duration;
 
 use host_link::port::{VirtualPort, WireSpeed};
 use host_link::{LinkError, Robot};
@@ -13,12 +17,22 @@ use crate::EmulatedRobot;
 /// # Errors
 /// [`LinkError::Refused`] where the firmware's own limits are tighter, and the link's.
 pub fn commission(
-    robot: EmulatedRobot,
+    mut robot: EmulatedRobot,
     config: &TwinConfig,
 ) -> Result<VirtualPort<EmulatedRobot>, LinkError> {
+    let doing = "closing the bench jumper";
+    let failed = |error| LinkError::Port {
+        doing,
+        source: io::Error::other(error),
+    };
+    robot.board_mut().set_jumper(true).map_err(failed)?;
     let port = VirtualPort::new(robot, WireSpeed::robot());
     // A seed that nobody who greets it afterwards is likely to use: two sessions of one seed would be taken for one.
     let mut robot = Robot::connect(port, !config.seed)?;
+    let seen = Duration::from_millis(300);
+    robot.listen(seen, |_| ControlFlow::Continue(()))?;
+    let board = robot.port_mut().device_mut().board_mut();
+    board.set_jumper(false).map_err(failed)?;
     for (joint, servo) in [Joint::Front, Joint::Back].into_iter().zip(config.servos) {
         robot.set_servo(joint, servo)?;
     }

@@ -6,7 +6,7 @@ use std::collections::VecDeque;
 use arbitrary::Arbitrary;
 use libfuzzer_sys::fuzz_target;
 use link_protocol::{
-    Binding, Decoder, Flags, Header, HelloReply, Key, Message, Reply, Request, ResetReason, Seal,
+    Binding, Checked, Decoder, Flags, Header, HelloReply, Key, Message, Reply, Request, ResetReason, Seal,
     StateName,
 };
 use swimmer_fuzz::ask::{Ask, PIECE, table};
@@ -67,6 +67,8 @@ struct Host {
     session: u16,
     sequence: u16,
     upload: u16,
+    /// Checksum of the table that was begun last.
+    begun: u32,
     decoder: Decoder,
     /// The robot's key, as far as a host can know it: the one that it granted last.
     key: Option<Key>,
@@ -99,7 +101,9 @@ impl Host {
                     if let Some((sequence, key)) = self.asked_key
                         && sequence == received.header.sequence
                     {
+                        // The session is closed: no telemetry tells it.
                         self.key = key;
+                        self.locked = key.is_some();
                     }
                 }
                 Message::Telemetry(telemetry) => {
@@ -182,7 +186,7 @@ fn prelude(robot: &mut FuzzedRobot, host: &mut Host, start: &Start) {
         ),
         (Start::Locked, Step::Greet { nonce: 2 }),
         (Start::Uploaded, Step::Upload { which: 1 }),
-        (Start::Armed, Step::Ask(Ask::Arm { clear_estop: false })),
+        (Start::Armed, Step::Ask(Ask::Arm)),
         (
             Start::Playing,
             Step::Ask(Ask::Play {
@@ -340,9 +344,19 @@ fn tell(robot: &mut FuzzedRobot, host: &mut Host, step: &Step) {
 
 /// The request of an ask, with what the witness has to know of it, unless it is sure to be turned away.
 fn noted(robot: &mut FuzzedRobot, host: &mut Host, ask: &Ask, turned_away: bool) -> Request {
-    let request = ask.request(host.upload);
+    let checked = match ask {
+        Ask::Follow { .. } => Checked {
+            table_crc32: host.begun,
+            ..robot.held()
+        },
+        _ => robot.held(),
+    };
+    let request = ask.request(host.upload, checked);
+    if let Request::Begin(begin) = &request {
+        host.begun = begin.crc32;
+    }
     if !turned_away {
-        robot.armed |= matches!(request, Request::Arm(_));
+        robot.armed |= matches!(request, Request::Arm);
         robot.remapped |= matches!(
             request,
             Request::SetServo { .. } | Request::Configure(_) | Request::Trim { .. }

@@ -84,7 +84,7 @@ impl Scene {
         match step {
             Step::Connect => self.open(|session, now| session.connect(now), None),
             Step::Ask(ask) => {
-                let request = ask.request(0);
+                let request = ask.request(0, self.robot.held());
                 // The witness of the brain's target needs to know; here the link decides what arrives.
                 self.robot.armed = true;
                 self.robot.remapped = true;

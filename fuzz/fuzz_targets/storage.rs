@@ -3,7 +3,7 @@
 
 use gait_player::{Inputs, Limits, TICK_US, Transport};
 use libfuzzer_sys::fuzz_target;
-use link_protocol::{Arm, Header, Message, Play, Request, StateName};
+use link_protocol::{Header, Message, Play, Request, StateName};
 use swimmer_fuzz::robot::{WildStorage, woken};
 use swimmer_fuzz::wire;
 
@@ -29,12 +29,8 @@ fuzz_target!(|data: (&[u8], &[u8])| {
             }
         }
     };
-    ask(
-        &mut brain,
-        20_000,
-        1,
-        Request::Arm(Arm { clear_estop: false }),
-    );
+    ask(&mut brain, 20_000, 1, Request::Arm);
+    let checked = brain.held();
     ask(
         &mut brain,
         20_000,
@@ -43,6 +39,7 @@ fuzz_target!(|data: (&[u8], &[u8])| {
             cycles: 1,
             period_us: 4_000_000,
             detached: true,
+            checked,
         }),
     );
     let window = Limits::ROBOT.pulse_min_ns..=Limits::ROBOT.pulse_max_ns;

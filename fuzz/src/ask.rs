@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use arbitrary::Arbitrary;
 use gait_player::GaitTable;
 use link_protocol::{
-    Arm, Begin, Chunk, Configuration, Follow, Joint, Key, MAX_SIGNED_CHUNK, Play, Request,
+    Begin, Checked, Chunk, Configuration, Follow, Joint, Key, MAX_SIGNED_CHUNK, Play, Request,
     ServoSettings, TangentialDrag,
 };
 
@@ -39,8 +39,9 @@ pub enum Ask {
     Table,
     CrashMessage,
     ClearResets,
-    Arm {
-        clear_estop: bool,
+    Arm,
+    ClearEStop {
+        count: u8,
     },
     Play {
         cycles: u8,
@@ -97,8 +98,9 @@ pub enum Ask {
 }
 
 impl Ask {
-    /// As the wire's request. `upload` is the number that the robot gave the last upload: a story names it by 0.
-    pub fn request(&self, upload_now: u16) -> Request {
+    /// The request on the wire. A story names the last upload by 0: `upload_now` is the number that the robot gave it. Plays name
+    /// what the host has `checked`.
+    pub fn request(&self, upload_now: u16, checked: Checked) -> Request {
         let number = |upload: u16| if upload == 0 { upload_now } else { upload };
         let joint = |back| if back { Joint::Back } else { Joint::Front };
         match *self {
@@ -108,7 +110,10 @@ impl Ask {
             Self::Table => Request::Table,
             Self::CrashMessage => Request::CrashMessage,
             Self::ClearResets => Request::ClearResets,
-            Self::Arm { clear_estop } => Request::Arm(Arm { clear_estop }),
+            Self::Arm => Request::Arm,
+            Self::ClearEStop { count } => Request::ClearEStop {
+                count: count.into(),
+            },
             Self::Play {
                 cycles,
                 tenths,
@@ -117,6 +122,7 @@ impl Ask {
                 cycles: cycles.into(),
                 period_us: u32::from(tenths) * 100_000,
                 detached,
+                checked,
             }),
             Self::Pause { detached } => Request::Pause { detached },
             Self::Resume => Request::Resume,
@@ -157,6 +163,7 @@ impl Ask {
                 upload: number(upload),
                 cycles: cycles.into(),
                 period_us: u32::from(tenths) * 100_000,
+                checked,
             }),
             Self::Trim { back, trim } => Request::Trim {
                 joint: joint(back),

@@ -4,7 +4,7 @@ use gait_player::storage::{MAX_SETTINGS, MemoryStorage, PAGE, Storage};
 use gait_player::{
     Boot, Brain, BrainConfig, Identity, Inputs, Limits, Output, ShortStarts, TICK_US, Transport,
 };
-use link_protocol::{Board, FirmwareVersion, ResetReason, StateName};
+use link_protocol::{Board, Checked, FirmwareVersion, ResetReason, StateName};
 
 /// The robot: brain, storage that outlives resets, and a clock that starts anew with each.
 pub struct FuzzedRobot {
@@ -60,6 +60,11 @@ impl FuzzedRobot {
     /// Bytes from the line.
     pub fn receive(&mut self, bytes: &[u8]) {
         self.brain.receive(self.now_us, Transport::Uart, bytes);
+    }
+
+    /// Table and settings as a play must name them.
+    pub fn held(&self) -> Checked {
+        self.brain.held()
     }
 
     /// The robot's clock, µs.

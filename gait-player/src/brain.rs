@@ -13,8 +13,7 @@
 //!       │ Settling │ ◄───────── │ Stopping │                           │ Paused │
 //!       └──────────┘            └──────────┘                           └────────┘
 //!
-//!       any state ── e-stop ──► EStopped ── arm with clear_estop ──► Holding
-//!                                        ── clear e-stop ──► Stopped
+//!       any state ── e-stop ──► EStopped ── clear e-stop ──► Stopped
 //! ```
 //!
 //! # Glossary
@@ -111,6 +110,8 @@ pub struct Brain {
     battery: Battery,
     battery_stops: bool,
     resets: Resets,
+    /// E-stops since the start; a latch that a reset left counts as one.
+    estops: u32,
     /// To be kept, the present run included.
     starts: ShortStarts,
     bench: Bench,
@@ -141,6 +142,7 @@ impl Brain {
         let mut settings = Settings {
             configuration,
             servos,
+            at_bench: servos,
             ranges: [None; 2],
             key: None,
         };
@@ -192,6 +194,7 @@ impl Brain {
             persist: Persist::new(),
             battery: Battery::default(),
             battery_stops: false,
+            estops: u32::from(resets.estop),
             resets,
             starts: ShortStarts::default(),
             bench: Bench::default(),

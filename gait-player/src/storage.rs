@@ -1,4 +1,4 @@
-//! What a power cut must not take: two raw slots for tables and one record of settings.
+//! Non-volatile memory: two raw slots for tables and one record of settings.
 //!
 //! A slot is written in the order erase, data, header; its header carries length, checksum and generation under a
 //! checksum of its own. A cut at any byte leaves that slot invalid and the other as it was: old or new, never a mix.
@@ -17,9 +17,9 @@ pub const SLOTS: usize = 2;
 /// Pages a slot must hold: header and table.
 pub const SLOT_PAGES: usize = 1 + link_protocol::MAX_TABLE / PAGE;
 /// Most bytes of the settings record.
-pub const MAX_SETTINGS: usize = 96;
+pub const MAX_SETTINGS: usize = 128;
 
-/// The door to non-volatile memory. The shell serves it only from [`crate::Brain::load`] and
+/// Non-volatile memory. The shell serves it only from [`crate::Brain::load`] and
 /// [`crate::Brain::serve_storage`]; erasing may stall the processor.
 pub trait Storage {
     /// What can go wrong; the brain only counts it and tries again later.

@@ -43,8 +43,11 @@ fn frames_of_other_sessions_do_not_keep_the_link_alive() {
             StateName::Stopping | StateName::Settling
         ) {
             let stale = Header::new(bench.session.wrapping_sub(1), 3);
-            bench.send(stale, &Message::KeepAlive);
-            bench.send(stale, &Message::Ping(Ping { host_us: 1 }));
+            let heartbeat = Heartbeat {
+                host_us: 1,
+                heard_us: bench.now_us,
+            };
+            bench.send(stale, &Message::Heartbeat(heartbeat));
             bench.send(stale, &Message::Request(Request::Status));
             bench
                 .brain
@@ -61,6 +64,7 @@ fn a_detached_play_goes_on_to_its_end() {
         cycles: 3,
         period_us: 5_000_000,
         detached: true,
+        checked: AS_HELD,
     });
     let mut bench = Bench::new();
     bench.upload(&circle(1.2));
@@ -80,6 +84,7 @@ fn another_host_can_take_over_a_detached_play() {
         cycles: 3,
         period_us: 5_000_000,
         detached: true,
+        checked: AS_HELD,
     });
     let mut bench = Bench::playing(&circle(1.2), detached);
     bench.keep_alive = false;
@@ -89,7 +94,10 @@ fn another_host_can_take_over_a_detached_play() {
     let status = bench.status();
     assert_eq!((status.state, status.cycles), (StateName::Playing, 3));
     assert!(status.flags.contains(Flags::DETACHED));
-    bench.done(Request::Pause { detached: true });
+    let pause = Request::Pause { detached: true };
+    assert_eq!(bench.refused(pause.clone()), Refusal::NotFresh);
+    bench.beat();
+    bench.done(pause);
     bench.run(SECOND);
     // Whoever sets it in motion again has to be there.
     assert_eq!(bench.refused(Request::Resume), Refusal::NotFresh);
@@ -153,7 +161,7 @@ fn r5_a_stop_moves_within_a_tick_and_an_estop_drops_the_pulses_within_one() {
         let after = bench.tick();
         assert_eq!((after.state, after.pulses_ns), (StateName::EStopped, None));
         assert_eq!(bench.status().cause, StopCause::EStop);
-        // A stop does not soften it, an arm without the flag does not clear it.
+        // A stop does not soften it, an arm does not clear it.
         bench.done(Request::Stop);
         assert_eq!(bench.refused(ARM), Refusal::EStopped);
         assert_eq!(bench.refused(play(1, 5_000_000)), Refusal::EStopped);
@@ -165,7 +173,8 @@ fn r5_a_stop_moves_within_a_tick_and_an_estop_drops_the_pulses_within_one() {
         );
         // The pulses come back where they were dropped.
         let pose = bench.output.setpoint;
-        bench.done(Request::Arm(Arm { clear_estop: true }));
+        bench.clear_estop();
+        bench.done(ARM);
         let armed = bench.tick();
         assert_eq!((armed.state, armed.setpoint), (StateName::Holding, pose));
         assert!(armed.pulses_ns.is_some());
@@ -216,6 +225,7 @@ fn an_arm_during_a_stop_holds_where_it_is() {
 fn a_trim_does_not_stretch_the_stop_after_it() {
     for (max_angle, max_rate, trims) in [(2.8, 3.5, [5_000, -5_000]), (0.1, 0.1, [400, -550])] {
         let mut bench = Bench::new();
+        bench.come_near();
         let Reply::Configuration(configuration) = bench.ask(Request::Configuration) else {
             panic!()
         };
@@ -255,6 +265,7 @@ fn a_trim_does_not_stretch_the_stop_after_it() {
 #[test]
 fn a_trim_that_no_stop_could_undo_in_time_is_refused_while_powered() {
     let mut bench = Bench::new();
+    bench.come_near();
     let Reply::Configuration(configuration) = bench.ask(Request::Configuration) else {
         panic!()
     };

@@ -4,7 +4,8 @@
 mod bench;
 
 use bench::*;
-use gait_player::{GaitTable, TICK_US};
+use gait_player::storage::MemoryStorage;
+use gait_player::{Brain, GaitTable, TICK_US};
 use link_protocol::*;
 
 /// Circles that all pass (0.3, −0.2) and start there.
@@ -22,6 +23,7 @@ fn follow(bench: &mut Bench, table: &GaitTable, cycles: u32, period_us: u32) -> 
         upload,
         cycles,
         period_us,
+        checked: AS_HELD,
     }))
 }
 
@@ -50,6 +52,7 @@ fn three_plays_are_one_motion() {
                 upload,
                 cycles: plays[next].0,
                 period_us: plays[next].1,
+                checked: AS_HELD,
             }));
             assert!(matches!(reply, Reply::Table(Some(_))), "{reply:?}");
             println!(
@@ -157,11 +160,12 @@ fn what_cannot_follow_is_refused_and_the_play_goes_on() {
             cycles: 20,
             period_us: 5_000_000,
             detached: true,
+            checked: AS_HELD,
         }),
     );
     assert_eq!(
         refused(follow(&mut detached, &second, 0, 3_000_000)),
-        Refusal::DetachedEndless
+        Refusal::DetachedTooLong
     );
 }
 
@@ -198,4 +202,106 @@ fn a_stop_ends_what_waits_to_follow() {
     bench.until(StateName::Stopped, 2 * SECOND);
     bench.run(10 * SECOND);
     assert_eq!(bench.output.state, StateName::Stopped);
+}
+
+/// The table that was never played becomes neither the active nor the stored one.
+#[test]
+fn a_stop_leaves_the_table_that_was_played() {
+    let (first, second) = (from_common(0.9, 256), from_common(0.4, 128));
+    for stop in [Request::Stop, Request::EStop] {
+        let mut flash = MemoryStorage::erased();
+        let mut bench = Bench::playing(&first, play(5, 5_000_000));
+        let reply = follow(&mut bench, &second, 3, 3_000_000);
+        assert!(matches!(reply, Reply::Table(Some(_))), "{reply:?}");
+        bench.done(stop);
+        bench.run(3 * SECOND);
+        let status = bench.status();
+        assert_eq!(status.table.unwrap().crc32, first.crc32());
+        assert!(!status.flags.contains(Flags::SWAP_PENDING));
+        bench.clear_estop();
+        while bench.tick().storage_wanted {
+            bench.brain.serve_storage(bench.now_us, &mut flash).unwrap();
+        }
+        let mut brain = Brain::new(config());
+        brain.load(&mut flash).unwrap();
+        let mut restarted = Bench::around(brain);
+        restarted.greet(2);
+        assert_eq!(restarted.status().table.unwrap().crc32, first.crc32());
+    }
+}
+
+/// No chain of detached plays gives a robot more than an hour of motion without a host.
+#[test]
+fn a_detached_play_and_its_follower_last_an_hour_at_most() {
+    let (first, second) = (from_common(0.9, 128), from_common(0.4, 128));
+    let detached = |cycles, period_us| {
+        Request::Play(Play {
+            cycles,
+            period_us,
+            detached: true,
+            checked: AS_HELD,
+        })
+    };
+    let mut bench = Bench::new();
+    bench.upload(&first);
+    bench.done(ARM);
+    for (cycles, period_us) in [
+        (0, 5_000_000),
+        (u32::MAX, 5_000_000),
+        (u32::MAX, u32::MAX),
+        (721, 5_000_000),
+    ] {
+        let refused = bench.refused(detached(cycles, period_us));
+        assert_eq!(refused, Refusal::DetachedTooLong, "{cycles} {period_us}");
+    }
+    bench.done(detached(720, 5_000_000));
+    bench.until(StateName::Playing, 3 * SECOND);
+    // An hour is ahead already; after ten minutes of it there is time for ten minutes more.
+    let too_long = Reply::Refused(Refusal::DetachedTooLong);
+    assert_eq!(follow(&mut bench, &second, 1, 5_000_000), too_long);
+    bench.run(600 * SECOND);
+    assert_eq!(follow(&mut bench, &second, 125, 5_000_000), too_long);
+    let reply = follow(&mut bench, &second, 119, 5_000_000);
+    assert!(matches!(reply, Reply::Table(Some(_))), "{reply:?}");
+    // An attended play may be endless.
+    let mut attended = Bench::playing(&first, play(0, 5_000_000));
+    attended.run(SECOND);
+    assert_eq!(attended.output.state, StateName::Playing);
+}
+
+/// R17: what follows is the table and the settings that its host checked.
+#[test]
+fn a_follower_other_than_the_checked_one_is_refused() {
+    let (first, second) = (from_common(0.9, 256), from_common(0.4, 128));
+    let mut bench = Bench::playing(&first, play(20, 5_000_000));
+    let upload = bench.send_table(&second);
+    let held = Checked {
+        table_crc32: second.crc32(),
+        ..bench.brain.held()
+    };
+    let ask = |checked| {
+        Request::Follow(Follow {
+            upload,
+            cycles: 1,
+            period_us: 3_000_000,
+            checked,
+        })
+    };
+    let table = Checked {
+        table_crc32: first.crc32(),
+        ..held
+    };
+    let other = Refusal::OtherTable {
+        held: second.crc32(),
+    };
+    assert_eq!(bench.refused(ask(table)), other);
+    let settings = Checked {
+        settings_crc32: held.settings_crc32 ^ 1,
+        ..held
+    };
+    let other = Refusal::OtherSettings {
+        held: held.settings_crc32,
+    };
+    assert_eq!(bench.refused(ask(settings)), other);
+    assert!(matches!(bench.ask(ask(held)), Reply::Table(Some(_))));
 }

@@ -24,8 +24,6 @@ impl Host {
         bench.upload(&circle(1.2));
         bench.come_near();
         bench.done(Request::SetKey(Some(KEY)));
-        // The session in which it was set goes on as it was.
-        bench.status();
         Self::greet(bench, &KEY, 9)
     }
 
@@ -58,11 +56,12 @@ impl Host {
     }
 
     fn ask(&mut self, request: Request) -> Reply {
-        if request.is_powering() {
+        if request.class(|| true).needs().freshness {
             self.beat();
         }
         let before = self.bench.replies.len();
         self.bench.sequence = self.bench.sequence.wrapping_add(1);
+        let request = self.bench.filled_in(request);
         self.say(self.bench.sequence, &Message::Request(request));
         for _ in 0..200 {
             if let Some((_, reply)) = self.bench.replies.get(before) {
@@ -234,8 +233,6 @@ fn a_key_outlives_a_power_cut_and_limits_that_have_changed() {
         .brain
         .serve_storage(bench.now_us, &mut memory)
         .unwrap();
-    // Behind a record that is otherwise what it was before there were keys.
-    assert_eq!(memory.settings, Some([&before[..], &KEY.0].concat()));
     for max_angle in [2.8, 1.0] {
         let mut config = config();
         config.limits.max_angle = max_angle;
@@ -251,4 +248,71 @@ fn a_key_outlives_a_power_cut_and_limits_that_have_changed() {
     let mut bench = Bench::around(brain);
     bench.greet(3);
     bench.done(ARM);
+}
+
+/// The attack: the session in which a key was set, and the number of the open one, are worth nothing to a stranger.
+#[test]
+fn setting_a_key_closes_the_session() {
+    let mut bench = Bench::new();
+    bench.upload(&circle(1.2));
+    bench.come_near();
+    bench.done(Request::SetKey(Some(KEY)));
+    let (session, number) = (bench.session, bench.sequence);
+    for request in [
+        ARM,
+        Request::Status,
+        Request::SetKey(Some(KEY)),
+        Request::SetKey(Some(Key([1; 16]))),
+        Request::SetKey(None),
+    ] {
+        assert_eq!(bench.refused(request), Refusal::StaleSession);
+    }
+    for other in [0, session.wrapping_add(1), session.wrapping_sub(1)] {
+        bench.session = other;
+        assert_eq!(bench.refused(Request::Status), Refusal::StaleSession);
+    }
+    bench.session = session;
+    // The reply was lost, and the host sends the same again; another key under that number is another request.
+    let again = |key| Request::SetKey(key);
+    let reply = bench.send_request(number, again(Some(KEY)));
+    assert_eq!(reply, Some(Reply::Done));
+    for other in [None, Some(Key([1; 16]))] {
+        let reply = bench.send_request(number, again(other));
+        assert_eq!(reply, Some(Reply::Refused(Refusal::StaleSession)));
+    }
+    // No lease, no telemetry; a stop acts all the same.
+    bench.telemetry.clear();
+    bench.run(SECOND);
+    assert!(bench.telemetry.is_empty());
+    assert_eq!(bench.ask(Request::Stop), Reply::Done);
+    // The same greeting again opens a session that wants the key.
+    let reply = bench.greet(1);
+    assert_ne!(reply.session, session);
+    assert_eq!(bench.refused(Request::Status), Refusal::KeyNeeded);
+    let mut host = Host::greet(bench, &KEY, 3);
+    assert_eq!(host.ask(ARM), Reply::Done);
+}
+
+/// A signed session that is closed repeats its last reply signed with the key that it began with.
+#[test]
+fn the_repeat_in_a_closed_session_is_signed_with_its_own_key() {
+    let mut host = Host::new();
+    assert_eq!(host.ask(Request::SetKey(None)), Reply::Done);
+    let again = Message::Request(Request::SetKey(None));
+    host.bench.replies.clear();
+    host.say(host.bench.sequence, &again);
+    assert_eq!(
+        host.bench.replies.pop().map(|(_, reply)| reply),
+        Some(Reply::Done)
+    );
+    // Unsigned, it is nobody's.
+    let (header, none) = (
+        Header::new(host.bench.session, host.bench.sequence),
+        Message::Request(Request::SetKey(None)),
+    );
+    host.bench.send(header, &none);
+    assert_eq!(
+        host.bench.replies.pop().map(|(_, reply)| reply),
+        Some(Reply::Refused(Refusal::KeyNeeded))
+    );
 }

@@ -93,7 +93,8 @@ fn r6_a_reset_restarts_nothing_and_an_estop_survives_it() {
             let mut after = restarted(bench.output.kept, reason);
             assert_eq!(after.status().state, StateName::EStopped);
             assert_eq!(after.refused(ARM), Refusal::EStopped);
-            after.done(Request::Arm(Arm { clear_estop: true }));
+            after.clear_estop();
+            after.done(ARM);
             after.tick();
             assert_eq!(
                 restarted(after.output.kept, reason).status().state,
@@ -160,6 +161,7 @@ fn disturb(bench: &mut Bench, random: &mut ChaCha8Rng) {
             cycles: 2,
             period_us: 5_000_000,
             detached: true,
+            checked: AS_HELD,
         }),
         Request::Pause { detached: false },
         Request::Pause { detached: true },
@@ -238,7 +240,10 @@ fn r6_no_path_from_a_latched_stop_to_motion_without_an_arm() {
         bench.inputs.battery_mv = Some(5_000);
         bench.keep_alive = true;
         bench.run(6 * SECOND);
-        bench.done(Request::Arm(Arm { clear_estop: true }));
+        if bench.output.state == StateName::EStopped {
+            bench.clear_estop();
+        }
+        bench.done(ARM);
         assert!(bench.tick().pulses_ns.is_some());
     }
     println!(

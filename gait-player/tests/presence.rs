@@ -1,4 +1,4 @@
-//! What only somebody at the robot may change, and who that is.
+//! Presence: the settings that need somebody at the robot, and who that is.
 #![allow(missing_docs)]
 mod bench;
 
@@ -98,6 +98,7 @@ fn limits_beyond_those_as_built_need_presence_and_never_pass_the_firmwares() {
 fn a_first_key_needs_presence_and_the_window_is_two_minutes_long() {
     let mut bench = at(Transport::Uart);
     bench.done(Request::SetKey(None));
+    bench.greet(2);
     assert_eq!(
         bench.refused(Request::SetKey(Some(KEY))),
         Refusal::NeedsPresence
@@ -171,22 +172,173 @@ fn an_estop_is_cleared_without_arming() {
     bench.done(Request::EStop);
     bench.tick();
     let stale = Header::new(bench.session.wrapping_sub(1), 9);
-    bench.send(stale, &Message::Request(Request::ClearEStop));
+    let clear = |count| Request::ClearEStop { count };
+    bench.send(stale, &Message::Request(clear(1)));
     assert_eq!(bench.tick().state, StateName::EStopped);
-    bench.done(Request::ClearEStop);
+    assert_eq!(bench.refused(ARM), Refusal::EStopped);
+    bench.done(clear(1));
     assert_eq!(bench.tick().state, StateName::Stopped);
     assert_eq!(bench.output.kept & 1, 0);
-    bench.done(Request::ClearEStop);
+    bench.done(clear(1));
     bench.done(ARM);
     assert_eq!(
-        bench.refused(Request::ClearEStop),
+        bench.refused(clear(1)),
         Refusal::WrongState(StateName::Holding)
     );
+}
+
+/// A clear that was sent before another e-stop does not clear that one, and none acts from a host that is silent.
+#[test]
+fn a_clear_names_the_estops_that_it_clears() {
+    let mut bench = at(Transport::Uart);
+    bench.done(Request::EStop);
+    assert_eq!(bench.status().estops, 1);
+    bench.done(Request::EStop);
+    let clear = |count| Request::ClearEStop { count };
+    assert_eq!(bench.refused(clear(1)), Refusal::EStopCount { count: 2 });
+    assert_eq!(bench.tick().state, StateName::EStopped);
+    bench.keep_alive = false;
+    bench.run(10 * SECOND);
+    assert_eq!(bench.refused(clear(2)), Refusal::NotFresh);
+    assert_eq!(bench.tick().state, StateName::EStopped);
+    bench.beat();
+    bench.done(clear(2));
+    assert_eq!(bench.tick().state, StateName::Stopped);
+}
+
+/// The attack: the shape (2.1, 2.1), whose links cross, written as (2.1, −2.1) for a servo that turns the other way.
+#[test]
+fn the_direction_of_a_servo_is_set_at_the_robot() {
+    let mut bench = at(Transport::Uart);
+    let reversed = Request::SetServo {
+        joint: Joint::Back,
+        settings: ServoSettings {
+            reversed: true,
+            ..config().servos[1]
+        },
+    };
+    assert_eq!(bench.refused(reversed.clone()), Refusal::NeedsPresence);
+    bench.come_near();
+    bench.done(reversed.clone());
+    // What holds needs nobody; the way back does.
+    bench.run(121 * SECOND);
+    bench.done(reversed);
+    let back = Request::SetServo {
+        joint: Joint::Back,
+        settings: config().servos[1],
+    };
+    assert_eq!(bench.refused(back), Refusal::NeedsPresence);
+}
+
+/// The attack: 20 µs of centre and half a radian of trim move a joint by 1.05 rad, beyond π where 2.8 rad are commanded.
+#[test]
+fn centre_and_trim_move_a_joint_by_a_degree_without_presence() {
+    let degree = 1_f32.to_radians();
+    for steps in [
+        [20_000, 5_000],
+        [-20_000, -5_000],
+        [20_000, 0],
+        [0, 5_000],
+        [300, 100],
+    ] {
+        let mut bench = at(Transport::Uart);
+        let [centre, trim] = steps;
+        let built = config().servos[1];
+        let settings = ServoSettings {
+            centre_ns: built.centre_ns.saturating_add_signed(centre),
+            ..built
+        };
+        // In small steps: each is measured from the bench, not from the one before.
+        for share in 1..=20 {
+            let settings = ServoSettings {
+                centre_ns: built.centre_ns.saturating_add_signed(centre * share / 20),
+                ..settings
+            };
+            let joint = Joint::Back;
+            bench.ask(Request::SetServo { joint, settings });
+            let trim = i16::try_from(trim * share / 20).unwrap();
+            bench.ask(Request::Trim { joint, trim });
+            let Reply::Servo(held) = bench.ask(Request::Servo(joint)) else {
+                panic!()
+            };
+            let map = gait_player::servo::ServoMap::from(held);
+            let moved = gait_player::servo::ServoMap::ROBOT.angle(map.pulse_ns(0.0));
+            assert!(moved.abs() <= degree + 1e-4, "{steps:?}: {moved} rad");
+        }
+        // At the robot the whole is accepted, and later steps are measured from there.
+        bench.come_near();
+        let joint = Joint::Back;
+        bench.done(Request::SetServo { joint, settings });
+        let trim = i16::try_from(trim).unwrap();
+        bench.done(Request::Trim { joint, trim });
+        bench.run(121 * SECOND);
+        bench.done(Request::Trim {
+            joint,
+            trim: trim - trim.signum() * 170,
+        });
+    }
+}
+
+/// Of the maps as they were set with presence, those are measured after a restart, too.
+#[test]
+fn the_bench_is_remembered_over_a_restart() {
+    let mut flash = gait_player::storage::MemoryStorage::erased();
+    let mut bench = at(Transport::Usb);
+    let trim = |trim| Request::Trim {
+        joint: Joint::Front,
+        trim,
+    };
+    bench.done(trim(1_000));
+    while bench.tick().storage_wanted {
+        bench.brain.serve_storage(bench.now_us, &mut flash).unwrap();
+    }
+    let mut brain = Brain::new(config());
+    brain.load(&mut flash).unwrap();
+    let mut bench = Bench::around(brain);
+    bench.greet(2);
+    bench.done(trim(1_170));
+    bench.done(trim(830));
+    assert_eq!(bench.refused(trim(1_180)), Refusal::NeedsPresence);
+    assert_eq!(bench.refused(trim(0)), Refusal::NeedsPresence);
+}
+
+/// Settings from a host that has been silent do nothing, nor does a clear of the latch of resets.
+#[test]
+fn settings_of_a_silent_host_do_nothing() {
+    let mut bench = at(Transport::Usb);
+    bench.keep_alive = false;
+    bench.run(10 * SECOND);
+    let servo = config().servos[0];
+    for request in [
+        configured(|wanted| wanted.chi = 2.0),
+        Request::SetServo {
+            joint: Joint::Front,
+            settings: ServoSettings { trim: 9, ..servo },
+        },
+        Request::Trim {
+            joint: Joint::Front,
+            trim: 9,
+        },
+        Request::SetPulseRange {
+            joint: Joint::Front,
+            range: PulseRange {
+                shortest_ns: 1_400_000,
+                longest_ns: 1_600_000,
+            },
+        },
+        Request::SetKey(Some(KEY)),
+        Request::ClearResets,
+        Request::EnterBootLoader,
+    ] {
+        assert_eq!(bench.refused(request), Refusal::NotFresh);
+    }
+    assert_eq!(bench.ask(Request::Servo(Joint::Front)), Reply::Servo(servo));
 }
 
 #[test]
 fn a_servos_end_stops_bound_its_pulses_and_the_gaits() {
     let mut bench = at(Transport::Uart);
+    bench.come_near();
     bench.upload(&circle(2.0));
     let map = gait_player::servo::ServoMap::ROBOT;
     let range = |reach: f32| PulseRange {
@@ -259,6 +411,16 @@ fn a_servos_end_stops_bound_its_pulses_and_the_gaits() {
         bench.ask(Request::PulseRange(Joint::Back)),
         Reply::PulseRange(range(1.5))
     );
+    assert_eq!(
+        bench.refused(set(Joint::Back, range(1.6))),
+        Refusal::NeedsPresence
+    );
+    bench.done(set(Joint::Back, range(1.4)));
+    assert_eq!(
+        bench.refused(set(Joint::Back, range(1.5))),
+        Refusal::NeedsPresence
+    );
+    bench.come_near();
     bench.done(set(Joint::Back, whole));
     bench.done(ARM);
     bench.done(play(1, 8_000_000));

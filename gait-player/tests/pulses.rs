@@ -223,14 +223,15 @@ fn request(random: &mut ChaCha8Rng, upload: u16) -> Request {
         9 => Request::Stop,
         10 if random.random_ratio(1, 4) => Request::EStop,
         11 => Request::ClearResets,
-        12 => Request::Arm(Arm {
-            clear_estop: random.random(),
-        }),
+        12 => Request::ClearEStop {
+            count: random.random_range(0..3),
+        },
         13..=15 => ARM,
         _ => Request::Play(Play {
             cycles: random.random_range(0..4),
             period_us,
             detached: random.random(),
+            checked: AS_HELD,
         }),
     }
 }

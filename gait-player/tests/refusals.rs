@@ -1,5 +1,4 @@
-//! What the brain refuses, with which numbers, and that a refusal changes nothing: plays, uploads, tables,
-//! configurations, trims.
+//! Refusals of the brain, their numbers, and that a refusal changes nothing: plays, uploads, tables, configurations, trims.
 #![allow(missing_docs)]
 #![allow(clippy::float_cmp)] // limits are compared to the last bit
 mod bench;
@@ -24,13 +23,52 @@ fn every_refusal_of_a_play() {
         cycles: 0,
         period_us: 5_000_000,
         detached: true,
+        checked: AS_HELD,
     });
-    assert_eq!(bench.refused(endless), Refusal::DetachedEndless);
+    assert_eq!(bench.refused(endless), Refusal::DetachedTooLong);
     assert!(matches!(
         bench.refused(play(1, 2_000_000)),
         Refusal::RateLimit { .. }
     ));
+    // R17: the robot plays only the table and the settings that its host checked.
+    let held = bench.brain.held();
+    let checked = |checked| {
+        Request::Play(Play {
+            cycles: 1,
+            period_us: 5_000_000,
+            detached: false,
+            checked,
+        })
+    };
+    assert_eq!(
+        bench.refused(checked(Checked {
+            table_crc32: !held.table_crc32,
+            ..held
+        })),
+        Refusal::OtherTable {
+            held: held.table_crc32
+        }
+    );
+    let settings = Checked {
+        settings_crc32: !held.settings_crc32,
+        ..held
+    };
+    assert_eq!(
+        bench.refused(checked(settings)),
+        Refusal::OtherSettings {
+            held: held.settings_crc32
+        }
+    );
     assert_eq!(bench.output.state, StateName::Holding);
+    // A trim by another program between check and play.
+    bench.done(Request::Trim {
+        joint: Joint::Back,
+        trim: 1,
+    });
+    assert!(matches!(
+        bench.refused(checked(held)),
+        Refusal::OtherSettings { .. }
+    ));
     bench.done(play(1, 5_000_000));
     assert_eq!(
         bench.refused(play(1, 5_000_000)),
@@ -314,6 +352,7 @@ fn a_configuration_tightens_limits_and_is_held_against_the_active_table() {
 #[test]
 fn trim_moves_the_pulse_not_the_setpoint_and_not_faster_than_allowed() {
     let mut bench = Bench::new();
+    bench.come_near();
     bench.done(ARM);
     bench.tick();
     bench.done(Request::Trim {
@@ -391,6 +430,7 @@ fn trim_moves_the_pulse_not_the_setpoint_and_not_faster_than_allowed() {
 #[test]
 fn a_servo_may_be_set_up_as_one_of_its_kind_only() {
     let mut bench = Bench::new();
+    bench.come_near();
     let Reply::Servo(servo) = bench.ask(Request::Servo(Joint::Front)) else {
         panic!()
     };
@@ -422,6 +462,7 @@ fn a_servo_may_be_set_up_as_one_of_its_kind_only() {
 #[test]
 fn a_trim_may_put_a_joint_at_its_limit_and_not_beyond() {
     let mut bench = Bench::new();
+    bench.come_near();
     let Reply::Servo(servo) = bench.ask(Request::Servo(Joint::Back)) else {
         panic!()
     };

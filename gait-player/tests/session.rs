@@ -35,7 +35,7 @@ fn nothing_but_stops_acts_without_the_open_session() {
                 crc32: 0,
             }),
         ] {
-            assert_eq!(bench.refused(request), Refusal::StaleSession { open });
+            assert_eq!(bench.refused(request), Refusal::StaleSession);
         }
     }
     bench.session = open;
@@ -325,7 +325,7 @@ fn greetings_open_sessions_and_change_no_state() {
     assert_eq!(second.schema_key, SCHEMA_KEY);
     bench.tick();
     assert_eq!(bench.output.state, StateName::Playing);
-    // An old greeting that the radio held back opens one more; the host sees StaleSession and greets again.
+    // An old greeting that the radio held back opens one more; the host is refused with StaleSession and greets again.
     assert_eq!(bench.greet(1).session, first + 2);
 }
 
@@ -341,11 +341,13 @@ fn a_host_of_another_version_is_told() {
         })
     };
     for (min, current, opens) in [
-        (3, 9, false),
+        (0x11, 0x19, false),
         (0, 0, false),
-        (2, 9, true),
-        (1, 1, true),
-        (0, 1, true),
+        // The builds before the first release.
+        (1, 2, false),
+        (0x10, 0x10, true),
+        (0x10, 0x19, true),
+        (2, 0x10, true),
     ] {
         bench.send(
             Header {
@@ -360,7 +362,7 @@ fn a_host_of_another_version_is_told() {
         };
         assert_eq!(
             (header.version, reply.protocol_min, reply.protocol_current),
-            (current, 1, 2)
+            (current, 0x10, 0x10)
         );
         assert_eq!(reply.session != 0, opens);
     }
@@ -374,7 +376,10 @@ fn a_host_of_another_version_is_told() {
     );
     assert_eq!(
         bench.replies.pop().unwrap().1,
-        Reply::Refused(Refusal::Version { min: 1, current: 2 })
+        Reply::Refused(Refusal::Version {
+            min: 0x10,
+            current: 0x10
+        })
     );
 }
 
@@ -404,12 +409,15 @@ fn requests_of_the_future_are_answered() {
 }
 
 #[test]
-fn pings_tell_the_robots_clock() {
+fn keep_alives_are_answered_with_the_robots_clock() {
     let mut bench = Bench::new();
     bench.others.clear();
     bench.send(
         Header::new(bench.session, 321),
-        &Message::Ping(Ping { host_us: 77 }),
+        &Message::Heartbeat(Heartbeat {
+            host_us: 77,
+            heard_us: 0,
+        }),
     );
     let pong = Pong {
         host_us: 77,

@@ -1,4 +1,4 @@
-//! Two ways to one robot, hosts of two versions, and what keeps the link alive: keep-alives that are fresh, and nothing else.
+//! Two transports to one robot, and the lease: renewed by fresh keep-alives, and by nothing else.
 #![allow(missing_docs)]
 mod bench;
 
@@ -40,15 +40,10 @@ fn r5_nothing_but_a_fresh_keep_alive_feeds_the_lease() {
         bench.send_request(bench.sequence, request);
     };
     let mut bench = holding();
-    let session = bench.session;
-    let ways: [Way; 7] = [
+    let ways: [Way; 5] = [
         Box::new(|_| {}),
         Box::new(move |bench| asked(bench, Request::Status)),
         Box::new(move |bench| asked(bench, ARM)),
-        Box::new(move |bench| bench.send(Header::new(session, 0), &Message::KeepAlive)),
-        Box::new(move |bench| {
-            bench.send(Header::new(session, 0), &Message::Ping(Ping { host_us: 1 }));
-        }),
         // Too old, and of the future.
         Box::new(|bench| bench.beat_that_heard(bench.now_us - 1_000_001)),
         Box::new(|bench| bench.beat_that_heard(bench.now_us + 1)),
@@ -106,73 +101,8 @@ fn r5_a_slow_but_living_link_is_no_silence() {
 }
 
 #[test]
-fn a_host_of_version_1_reads_and_stops_and_powers_nothing() {
-    let mut bench = Bench::new();
-    bench.upload(&circle(1.2));
-    bench.done(ARM);
-    let hello = Hello {
-        protocol_min: 1,
-        protocol_current: 1,
-        schema_key: SCHEMA_KEY_V1,
-        host_nonce: 99,
-    };
-    bench.send(
-        Header {
-            version: 1,
-            session: 0,
-            sequence: 1,
-        },
-        &Message::Hello(hello),
-    );
-    let Some((_, Message::HelloReply(reply))) = bench.others.pop() else {
-        panic!()
-    };
-    bench.keep_alive = false;
-    let mut number = 0;
-    let mut ask = |bench: &mut Bench, request| {
-        number += 1;
-        let header = Header {
-            version: 1,
-            session: reply.session,
-            sequence: number,
-        };
-        bench.replies.clear();
-        bench.send(header, &Message::Request(request));
-        let (told, reply) = bench.replies.pop().unwrap();
-        assert_eq!(told, header, "answered in another version");
-        reply
-    };
-    assert!(matches!(ask(&mut bench, Request::Status), Reply::Status(_)));
-    assert!(matches!(
-        ask(&mut bench, Request::Table),
-        Reply::Table(Some(_))
-    ));
-    assert_eq!(ask(&mut bench, Request::Stop), Reply::Done);
-    bench.until(StateName::Stopped, SECOND);
-    for request in [ARM, play(1, 8_000_000), Request::Resume] {
-        let refused = ask(&mut bench, request);
-        assert_eq!(
-            refused,
-            Reply::Refused(Refusal::Version { min: 2, current: 2 })
-        );
-    }
-    // Its telemetry comes in its version.
-    let (mut decoder, mut bytes) = (Decoder::new(), [0; 640]);
-    bench.now_us += 20_000;
-    bench.brain.tick(bench.now_us, &bench.inputs);
-    bench.now_us += 20_000;
-    bench.brain.tick(bench.now_us, &bench.inputs);
-    let len = bench.brain.transmit(Uart, &mut bytes);
-    let told: Vec<_> = bytes[..len]
-        .iter()
-        .filter_map(|&byte| decoder.push(byte))
-        .collect();
-    assert!(!told.is_empty() && told.iter().all(|told| told.header.version == 1));
-}
-
-#[test]
 fn stops_of_any_version_act_and_are_answered_in_it() {
-    for version in [0, 1, 2, 3, 255] {
+    for version in [0, 1, 2, 0x10, 0x11, 255] {
         for (request, state) in [
             // It stands at neutral, where a ramp ends as it begins.
             (Request::Stop, StateName::Settling),
@@ -195,14 +125,11 @@ fn stops_of_any_version_act_and_are_answered_in_it() {
 #[test]
 fn whoever_greeted_last_holds_the_session_and_a_stop_is_answered_where_it_came() {
     let mut bench = holding();
-    let (session, sequence) = (bench.session, bench.sequence);
+    let sequence = bench.sequence;
     // The radio's session over the cable: not of this session, but for a stop.
     bench.via = Usb;
     let reply = bench.send_request(sequence + 1, Request::Status);
-    assert_eq!(
-        reply,
-        Some(Reply::Refused(Refusal::StaleSession { open: session }))
-    );
+    assert_eq!(reply, Some(Reply::Refused(Refusal::StaleSession)));
     bench.beat();
     assert_eq!(bench.send_request(9, Request::Stop), Some(Reply::Done));
     assert_eq!(bench.tick().state, StateName::Settling);
@@ -289,8 +216,8 @@ fn answers_and_telemetry_of_a_robot_with_a_key_verify_and_count_up() {
         all
     };
     let hello = Message::Hello(Hello {
-        protocol_min: 1,
-        protocol_current: 2,
+        protocol_min: PROTOCOL_MIN,
+        protocol_current: PROTOCOL_CURRENT,
         schema_key: SCHEMA_KEY,
         host_nonce: 2,
     });
@@ -353,27 +280,6 @@ fn answers_and_telemetry_of_a_robot_with_a_key_verify_and_count_up() {
         (outside, Ok(Message::Reply(Reply::Done)))
     );
     assert_eq!(stopped.signature, None);
-    // A host of version 1 knows no signed answers.
-    let hello = Message::Hello(Hello {
-        protocol_min: 1,
-        protocol_current: 1,
-        schema_key: SCHEMA_KEY_V1,
-        host_nonce: 3,
-    });
-    let header = Header {
-        version: 1,
-        ..Header::new(0, 1)
-    };
-    say(&mut bench, header, &hello, None, 0);
-    for _ in 0..10 {
-        bench.now_us += 20_000;
-        bench.brain.tick(bench.now_us, &bench.inputs);
-    }
-    let heard = listen(&mut bench.brain);
-    assert!(heard.len() > 3);
-    for (received, _) in heard {
-        assert_eq!((received.header.version, received.signature), (1, None));
-    }
 }
 
 /// Nothing of this is stored: a start without its storage counts from what the RAM says, or from one.

@@ -36,7 +36,7 @@ use std::time::Duration;
 
 use link_protocol::{
     Begin, Decoder, Header, HelloReply, Key, MAX_CHUNK, MAX_ENCODED, MAX_SIGNED_CHUNK, Message,
-    PROTOCOL_CURRENT, Request, STOP_VERSION, Seal, Telemetry, crc32c, encode, encode_signed,
+    Request, Seal, Telemetry, crc32c, encode, encode_signed,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -47,6 +47,7 @@ pub use counters::LinkCounters;
 pub use error::{LinkError, cause_in_words, cycles_in_words};
 pub use event::{Event, Ticket};
 pub(crate) use greeting::firmware_name;
+pub use in_flight::Follower;
 pub use upload::{UploadPhase, UploadProgress};
 
 use beats::Beats;
@@ -92,8 +93,6 @@ pub struct Session {
     link: Link,
     /// The session number of the last open session: a stop goes out under it.
     number: u16,
-    /// The protocol's version in that session.
-    version: u8,
     /// Signs the frames of that session, and verifies the robot's.
     seal: Option<Seal>,
     /// Frames signed in it.
@@ -135,7 +134,6 @@ impl Session {
             outgoing: Vec::new(),
             link: Link::Closed,
             number: 0,
-            version: PROTOCOL_CURRENT,
             seal: None,
             signed: 0,
             proven: 0,
@@ -207,15 +205,15 @@ impl Session {
         self.send_table(now, slot, table, None, deadline)
     }
 
-    /// The same for a table that shall not become active, but follow the play under way, for so many cycles of so many µs.
+    /// The same for a table that does not become active, but follows the play under way as `follower`.
     pub fn upload_follower(
         &mut self,
         now: Duration,
         table: &[u8],
-        (cycles, period_us): (u32, u32),
+        follower: Follower,
         deadline: Duration,
     ) -> Ticket {
-        self.send_table(now, 0, table, Some((cycles, period_us)), deadline)
+        self.send_table(now, 0, table, Some(follower), deadline)
     }
 
     fn send_table(
@@ -223,7 +221,7 @@ impl Session {
         now: Duration,
         slot: u8,
         table: &[u8],
-        follows: Option<(u32, u32)>,
+        follows: Option<Follower>,
         deadline: Duration,
     ) -> Ticket {
         let ticket = self.ticket();
@@ -360,16 +358,7 @@ impl Session {
     /// Encodes a message into the outgoing bytes; returns its length on the wire.
     fn send(&mut self, sequence: u16, message: &Message) -> usize {
         let mut frame = [0; MAX_ENCODED];
-        let version = match message {
-            Message::Request(request) if request.is_stop() => STOP_VERSION,
-            Message::Hello(_) => PROTOCOL_CURRENT,
-            _ => self.version,
-        };
-        let header = Header {
-            version,
-            session: self.number,
-            sequence,
-        };
+        let header = Header::new(self.number, sequence);
         let encoded = match &self.seal {
             Some(seal) if !matches!(message, Message::Hello(_)) => {
                 self.signed += 1;

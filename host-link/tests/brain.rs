@@ -271,9 +271,13 @@ fn telemetry_from_before_an_order_is_forgotten() {
 #[test]
 fn every_ticket_ends_exactly_once() {
     use host_link::session::{Event, Session, SessionConfig};
-    use link_protocol::{Arm, Joint, Play, Request};
+    use link_protocol::{Checked, Joint, Play, Request, crc32c};
     use rand::{RngExt, SeedableRng};
     let mut ended_well = 0;
+    let checked = Checked {
+        table_crc32: crc32c(circle(0.8).bytes()),
+        settings_crc32: tank_less::settings_as_built(),
+    };
     for seed in 0..150 {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
         let faults = [
@@ -297,6 +301,7 @@ fn every_ticket_ends_exactly_once() {
                     cycles: 1,
                     period_us: 6_000_000,
                     detached: false,
+                    checked,
                 };
                 let ticket = match rng.random_range(0..12) {
                     0 | 1 => session.connect(now),
@@ -307,7 +312,7 @@ fn every_ticket_ends_exactly_once() {
                         now + MS * rng.random_range(1..20_000),
                     ),
                     3 => session.request(now, Request::Stop),
-                    4 => session.request(now, Request::Arm(Arm { clear_estop: true })),
+                    4 => session.request(now, Request::Arm),
                     5 => session.request(now, Request::Play(play)),
                     6 => session.request(
                         now,

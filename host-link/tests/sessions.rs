@@ -164,8 +164,11 @@ impl Operator {
             return;
         }
         let cycles = self.rng.random_range(1..3);
+        let Some(held) = self.ask(REQUEST, "the status", Robot::held) else {
+            return;
+        };
         let begun = self.ask(REQUEST, "play", |robot| {
-            robot.play(cycles, PERIOD, detached)
+            robot.play_checked(cycles, PERIOD, detached, held)
         });
         if begun.is_none() {
             return;
@@ -196,7 +199,7 @@ impl Operator {
             3..=5 => self.play(),
             6 => self.stop(),
             7 => {
-                let trim = f64::from(self.rng.random_range(-200..200)) * 1e-4;
+                let trim = f64::from(self.rng.random_range(-150..150)) * 1e-4;
                 self.ask(REQUEST, "a trim", |robot| {
                     robot.trim(link_protocol::Joint::Front, trim)
                 });

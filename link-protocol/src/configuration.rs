@@ -1,4 +1,4 @@
-//! What the robot must know of itself: geometry and drag for the on-board pose, limits, the servo map.
+//! Settings of the robot: geometry and drag for the on-board pose, limits, servo maps and pulse ranges.
 
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
@@ -30,7 +30,7 @@ pub enum TangentialDrag {
     OverViscosity(f32),
 }
 
-/// What the brain needs for the on-board pose and its limits. It may tighten the firmware's limits, never loosen them;
+/// Geometry and drag for the on-board pose, and limits. It may tighten the firmware's limits, never loosen them;
 /// a pair of limits that needs more than one second to neutral (`max_angle / max_rate > 1 s`) is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
 pub struct Configuration {
@@ -73,4 +73,19 @@ pub struct PulseRange {
     pub shortest_ns: u32,
     /// Longest pulse, ns.
     pub longest_ns: u32,
+}
+
+/// Hash of the settings on which a host's checks of a play rest: CRC-32C over the postcard bytes of the configuration, the maps
+/// of front and back servo and their pulse ranges, in this order. [`crate::Request::PulseRange`] reports the range in force, which
+/// is the firmware's window if none is set.
+pub fn settings_crc32(
+    configuration: &Configuration,
+    servos: &[ServoSettings; 2],
+    ranges: &[PulseRange; 2],
+) -> u32 {
+    let mut bytes = [0; 128];
+    // 33 bytes, twice 13 and twice 10 at most.
+    let len = postcard::to_slice(&(configuration, servos, ranges), &mut bytes)
+        .map_or(0, |written| written.len());
+    crate::crc32c(&bytes[..len])
 }

@@ -4,7 +4,7 @@ use crate::{
     HEADER, KIND_SIGNED, MAX_ENCODED, MAX_RAW, Message, PROTOCOL_CURRENT, TRAILER, crc32c,
 };
 
-/// Which way a frame goes.
+/// Direction of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Direction {
     /// Host to robot.
@@ -13,7 +13,7 @@ pub enum Direction {
     ToHost,
 }
 
-/// What stands before every body.
+/// Header of a frame, before its body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Header {
     /// Protocol version of the body.
@@ -38,9 +38,9 @@ impl Header {
 /// The kind byte of a frame, without [`KIND_SIGNED`].
 ///
 /// ```
-/// use link_protocol::{Kind, Message};
+/// use link_protocol::{Kind, Message, Request};
 ///
-/// assert_eq!(Kind::from_byte(6), Some(Message::KeepAlive.kind()));
+/// assert_eq!(Kind::from_byte(3), Some(Message::Request(Request::Stop).kind()));
 /// assert_eq!(Kind::from_byte(99), None);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,14 +56,10 @@ pub enum Kind {
     Reply = 4,
     /// [`crate::Telemetry`].
     Telemetry = 5,
-    /// Empty.
-    KeepAlive = 6,
-    /// [`crate::Ping`].
-    Ping = 7,
+    /// [`crate::Heartbeat`].
+    Heartbeat = 6,
     /// [`crate::Pong`].
-    Pong = 8,
-    /// [`crate::Heartbeat`]; since version 2.
-    Heartbeat = 9,
+    Pong = 7,
 }
 
 impl Kind {
@@ -75,16 +71,14 @@ impl Kind {
             3 => Self::Request,
             4 => Self::Reply,
             5 => Self::Telemetry,
-            6 => Self::KeepAlive,
-            7 => Self::Ping,
-            8 => Self::Pong,
-            9 => Self::Heartbeat,
+            6 => Self::Heartbeat,
+            7 => Self::Pong,
             _ => return None,
         })
     }
 }
 
-/// What a signed frame carries between body and CRC: a counter that only grows, and a truncated keyed tag over header,
+/// Signature of a frame, between body and CRC: a counter that only grows, and a truncated keyed tag over header,
 /// body and counter ([`crate::Seal`]). A robot without a key reads past it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Signature {
@@ -129,7 +123,7 @@ pub(crate) fn header_bytes(header: Header, kind: u8) -> [u8; HEADER] {
     [header.version, s0, s1, q0, q1, kind]
 }
 
-/// Why a frame could not be encoded.
+/// Reasons for which a frame cannot be encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EncodeError {
     /// The body is larger than a frame holds.
@@ -150,19 +144,19 @@ pub fn encode(header: Header, message: &Message, out: &mut [u8]) -> Result<usize
     encode_body(header, message.kind() as u8, body, None, out)
 }
 
-/// Encodes any body, signed or not: the door for stored replies, signatures and tests.
+/// Encodes any body, signed or not: for stored replies, signatures and tests.
 ///
 /// # Errors
 /// `out` is shorter than [`MAX_ENCODED`], or the body with its signature is too long for a frame.
 ///
 /// ```
-/// use link_protocol::{Decoder, Header, Kind, MAX_ENCODED, Message, encode_body};
+/// use link_protocol::{Decoder, Header, Kind, MAX_ENCODED, Message, Request, encode_body};
 ///
 /// let mut frame = [0; MAX_ENCODED];
-/// let length = encode_body(Header::new(1, 2), Kind::KeepAlive as u8, &[], None, &mut frame).unwrap();
+/// let length = encode_body(Header::new(1, 2), Kind::Request as u8, &[14], None, &mut frame).unwrap();
 /// let mut decoder = Decoder::new();
 /// let received = frame[..length].iter().find_map(|&byte| decoder.push(byte)).unwrap();
-/// assert_eq!(received.message, Ok(Message::KeepAlive));
+/// assert_eq!(received.message, Ok(Message::Request(Request::Stop)));
 /// ```
 pub fn encode_body(
     header: Header,

@@ -1,4 +1,4 @@
-//! The greeting that never changes: it tells two ends of different versions what they are. Frozen for all versions.
+//! The greeting, which is the same in all versions, so that two ends of different versions can report it.
 
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};

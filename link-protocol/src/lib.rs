@@ -15,14 +15,16 @@
 //!
 //! # Versions
 //!
-//! [`PROTOCOL_CURRENT`] is spoken, [`PROTOCOL_MIN`] still understood. [`Hello`] and [`HelloReply`] keep their encoding
-//! for ever, in frames of any version, so that two ends that do not match can say so; so do [`Request::Stop`],
-//! [`Request::EStop`] and the [`Reply::Done`] that answers them, so that every end stops every robot. Enum variants are only
-//! appended. `tests/golden/` holds the bytes of every message, a file for each version and one for what is for ever; they
-//! are never edited.
+//! This is version 1.0: the byte [`PROTOCOL_CURRENT`]. [`PROTOCOL_MIN`] is the oldest version still understood.
+//! [`Hello`], [`HelloReply`], [`Request::Stop`], [`Request::EStop`] and the [`Reply::Done`] that answers a stop keep their
+//! encoding in every version, and are read whatever the version byte of their frame. So two ends that do not match can report
+//! it, and every host stops every robot. Enum variants are only appended. `tests/golden/` holds the bytes of every message,
+//! one file per version and one for the messages of every version; the files are never edited.
 //!
-//! Version 2 is version 1 with another keep-alive, the [`Heartbeat`], and with signed answers where there is a key. A host of
-//! version 1 may read and stop a robot of version 2; to power the servos takes [`POWER_SINCE`].
+//! # Authority
+//!
+//! [`Request::class`] gives each request its [`RequestClass`], and [`RequestClass::needs`] the conditions under which the robot
+//! lets it act. The robot enforces them before anything else; the tables of the documentation are generated from them.
 //!
 //! # Authentication
 //!
@@ -33,21 +35,22 @@
 //! # An example
 //!
 //! ```
-//! use link_protocol::{Decoder, Header, MAX_ENCODED, Message, Ping, encode};
+//! use link_protocol::{Decoder, Header, MAX_ENCODED, Message, Request, encode};
 //!
-//! let ping = Message::Ping(Ping { host_us: 7 });
+//! let status = Message::Request(Request::Status);
 //! let mut frame = [0; MAX_ENCODED];
-//! let length = encode(Header::new(1, 2), &ping, &mut frame).unwrap();
+//! let length = encode(Header::new(1, 2), &status, &mut frame).unwrap();
 //!
 //! let mut decoder = Decoder::new();
 //! let received = frame[..length].iter().find_map(|&byte| decoder.push(byte)).unwrap();
-//! assert_eq!((received.header, received.message), (Header::new(1, 2), Ok(ping)));
+//! assert_eq!((received.header, received.message), (Header::new(1, 2), Ok(status)));
 //!
 //! frame[4] ^= 1;
 //! assert!(frame[..length].iter().all(|&byte| decoder.push(byte).is_none()), "a flipped bit is noticed");
 //! ```
 #![cfg_attr(not(test), no_std)]
 
+mod authority;
 mod checksum;
 mod configuration;
 mod decoder;
@@ -60,8 +63,11 @@ mod request;
 mod seal;
 mod telemetry;
 
+pub use authority::{Needs, RequestClass, SettingsHeld, StateNeeded};
 pub use checksum::{Checksum, crc32c};
-pub use configuration::{Configuration, Joint, PulseRange, ServoSettings, TangentialDrag};
+pub use configuration::{
+    Configuration, Joint, PulseRange, ServoSettings, TangentialDrag, settings_crc32,
+};
 pub use decoder::{DecodeCounters, Decoder, Received};
 pub use frame::{Direction, EncodeError, Header, Kind, Signature, encode, encode_body};
 pub use hello::{
@@ -70,18 +76,17 @@ pub use hello::{
 pub use message::{BodyError, Message};
 pub use refusal::{CrossingPlace, Refusal};
 pub use reply::{BenchStatus, Counters, Reply, Status, TableInfo};
-pub use request::{Arm, Begin, Chunk, Follow, Play, Request};
+pub use request::{Begin, Checked, Chunk, Follow, Play, Request};
 pub use seal::{Binding, Key, Seal, encode_signed};
-pub use telemetry::{Flags, Heartbeat, Ping, Pong, Pose, StateName, StopCause, Telemetry};
+pub use telemetry::{Flags, Heartbeat, Pong, Pose, StateName, StopCause, Telemetry};
 
 /// Lowest protocol version this crate understands.
-pub const PROTOCOL_MIN: u8 = 1;
-/// The protocol version this crate speaks.
-pub const PROTOCOL_CURRENT: u8 = 2;
-/// Lowest version whose requests may power the servos: keep-alives before it could be old without anybody knowing.
-pub const POWER_SINCE: u8 = 2;
-/// The version of the frames that stops go out in: every robot there is reads them.
-pub const STOP_VERSION: u8 = 1;
+pub const PROTOCOL_MIN: u8 = 0x10;
+/// The protocol version this crate speaks: 1.0. The upper four bits are the major number, the lower four the minor one.
+/// Builds before the first release used 0.1 and 0.2 (the bytes 1 and 2); nothing reads them.
+pub const PROTOCOL_CURRENT: u8 = 0x10;
+/// Longest motion that a robot may have ahead of it without a host, µs.
+pub const MAX_DETACHED_US: u64 = 3_600_000_000;
 /// Most raw bytes of a frame: header, body and CRC, before COBS.
 pub const MAX_RAW: usize = 128;
 /// Bytes of the header.
@@ -104,12 +109,25 @@ pub const MAX_TABLE: usize = 4 * MAX_KNOTS;
 pub const ANGLE_UNIT_RAD: f32 = 1e-4;
 /// Top bit of the kind byte: the frame carries a [`Signature`].
 pub const KIND_SIGNED: u8 = 0x80;
-/// Identifies the set of messages of version 1 by their structure ([`postcard_schema`]'s key of all messages as they were
-/// frozen): what a robot or host of that version says of itself.
-pub const SCHEMA_KEY_V1: [u8; 8] = [0xC7, 0x47, 0x8B, 0x1F, 0x03, 0x22, 0x6B, 0x44];
-/// The same of version 2: two ends with the same key read the same fields. Variants appended since change no byte of what was
-/// there, and an end that does not know one says so ([`Refusal::NotUnderstood`]).
-pub const SCHEMA_KEY: [u8; 8] = [0xCF, 0x6C, 0x35, 0xBC, 0x8D, 0x1E, 0x81, 0xB9];
-/// The structure of all messages as they are now, appended variants too: for the golden files, never on the wire.
+/// Identifies the messages of version 1.0 by their structure ([`postcard_schema`]'s key of all messages as they were frozen).
+/// Two ends with the same key read the same fields. Variants appended since change no byte of the earlier ones; an end that
+/// does not know a variant reports it ([`Refusal::NotUnderstood`]).
+pub const SCHEMA_KEY: [u8; 8] = [0x4D, 0x5F, 0x70, 0xF7, 0x8B, 0x7A, 0x68, 0x1C];
+/// Key of the structure of all messages as they are now, appended variants included: for the golden files, never on the wire.
 pub const SCHEMA_NOW: [u8; 8] =
-    postcard_schema::key::Key::for_path::<message::Schemas>("swimmer/link/v2").to_bytes();
+    postcard_schema::key::Key::for_path::<message::Schemas>("swimmer/link/v1").to_bytes();
+
+/// Name of a version byte.
+///
+/// ```
+/// assert_eq!(link_protocol::VersionName(0x10).to_string(), "1.0");
+/// assert_eq!(link_protocol::VersionName(2).to_string(), "0.2");
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct VersionName(pub u8);
+
+impl core::fmt::Display for VersionName {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        write!(f, "{}.{}", self.0 >> 4, self.0 & 15)
+    }
+}

@@ -1,6 +1,6 @@
 //! All messages in one enum, and their bodies' decoding: the kind says which type, and every byte must be used.
 
-use crate::{Heartbeat, Hello, HelloReply, Kind, Ping, Pong, Reply, Request, Telemetry};
+use crate::{Heartbeat, Hello, HelloReply, Kind, Pong, Reply, Request, Telemetry};
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
@@ -16,19 +16,15 @@ pub enum Message {
     Request(Request),
     /// Answers it.
     Reply(Reply),
-    /// Tells unasked.
+    /// Sent by the robot without a request.
     Telemetry(Telemetry),
-    /// Version 1's: says nothing but that a host lives. The body is empty.
-    KeepAlive,
-    /// Asks for the time.
-    Ping(Ping),
-    /// Tells it.
-    Pong(Pong),
-    /// Feeds the lease while it is fresh, and asks for the time.
+    /// Keep-alive: renews the lease while it is fresh, and requests the time.
     Heartbeat(Heartbeat),
+    /// Answers it with the time.
+    Pong(Pong),
 }
 
-/// Everything whose structure the schema key vouches for.
+/// All types whose structure enters the schema key.
 #[derive(Schema)]
 #[allow(dead_code)] // exists for its schema only
 pub(crate) struct Schemas {
@@ -37,12 +33,11 @@ pub(crate) struct Schemas {
     request: Request,
     reply: Reply,
     telemetry: Telemetry,
-    ping: Ping,
-    pong: Pong,
     heartbeat: Heartbeat,
+    pong: Pong,
 }
 
-/// Why the body of a whole frame is no message.
+/// Reasons for which the body of a whole frame is not a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BodyError {
     /// The frame's version is outside [`crate::PROTOCOL_MIN`]`..=`[`crate::PROTOCOL_CURRENT`], and it is neither a greeting nor a
@@ -65,10 +60,8 @@ impl Message {
             Self::Request(_) => Kind::Request,
             Self::Reply(_) => Kind::Reply,
             Self::Telemetry(_) => Kind::Telemetry,
-            Self::KeepAlive => Kind::KeepAlive,
-            Self::Ping(_) => Kind::Ping,
-            Self::Pong(_) => Kind::Pong,
             Self::Heartbeat(_) => Kind::Heartbeat,
+            Self::Pong(_) => Kind::Pong,
         }
     }
 
@@ -83,10 +76,8 @@ impl Message {
             Self::Request(body) => postcard::to_slice(body, out),
             Self::Reply(body) => postcard::to_slice(body, out),
             Self::Telemetry(body) => postcard::to_slice(body, out),
-            Self::KeepAlive => Ok(&mut out[..0]),
-            Self::Ping(body) => postcard::to_slice(body, out),
-            Self::Pong(body) => postcard::to_slice(body, out),
             Self::Heartbeat(body) => postcard::to_slice(body, out),
+            Self::Pong(body) => postcard::to_slice(body, out),
         }
     }
 
@@ -109,16 +100,13 @@ impl Message {
             Kind::Request => whole(body).map(Self::Request),
             Kind::Reply => whole(body).map(Self::Reply),
             Kind::Telemetry => whole(body).map(Self::Telemetry),
-            Kind::KeepAlive if body.is_empty() => Ok(Self::KeepAlive),
-            Kind::KeepAlive => Err(BodyError::TrailingBytes(body.len())),
-            Kind::Ping => whole(body).map(Self::Ping),
-            Kind::Pong => whole(body).map(Self::Pong),
             Kind::Heartbeat => whole(body).map(Self::Heartbeat),
+            Kind::Pong => whole(body).map(Self::Pong),
         }
     }
 }
 
-/// What every version obeys and reads, whatever the frame's version says: a stop, an e-stop, and the answer to either.
+/// Messages that every version reads, whatever the version byte: a stop, an e-stop, and the answer to either.
 /// Their bodies are one byte each, frozen like the greeting.
 fn frozen(kind: Kind, body: &[u8]) -> Option<Message> {
     match (kind, body) {

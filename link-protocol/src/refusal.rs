@@ -1,17 +1,14 @@
-//! Why the robot refuses: each reason with the numbers an operator needs to mend it. Variants are only appended.
+//! Reasons for which the robot refuses, each with the numbers that an operator needs. Variants are only appended.
 
-use crate::{Joint, StateName};
+use crate::{Joint, StateName, VersionName};
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
-/// Why a request was not done. Angles are in 1e-4 rad, rates in 1e-4 rad/s.
+/// Reason for which a request was not done. Angles are in 1e-4 rad, rates in 1e-4 rad/s.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Refusal {
     /// The frame's session is not the open one: greet again.
-    StaleSession {
-        /// The session that is open.
-        open: u16,
-    },
+    StaleSession,
     /// A later request acted already.
     Superseded {
         /// Sequence number of the last request that acted.
@@ -28,7 +25,7 @@ pub enum Refusal {
     NotUnderstood,
     /// Arm first.
     NotArmed,
-    /// An e-stop is latched: arm with `clear_estop`.
+    /// An e-stop is latched: clear it first.
     EStopped,
     /// Not in this state.
     WrongState(StateName),
@@ -107,8 +104,8 @@ pub enum Refusal {
         /// φ₂ there, 1e-4 rad.
         phi2: i16,
     },
-    /// A play without end cannot be detached.
-    DetachedEndless,
+    /// A detached play, with what follows it, would go on for more than an hour, or without end.
+    DetachedTooLong,
     /// A committed table still waits for its cycle boundary.
     SwapPending,
     /// The numbers of the request are no lengths, drags, limits or pulses, or loosen the firmware's limits.
@@ -128,7 +125,7 @@ pub enum Refusal {
     KeyNeeded,
     /// The frame is signed, but not with the robot's key for this session.
     WrongKey,
-    /// Only with somebody at the robot: a first key, lengths or limits beyond those as built, the boot loader.
+    /// Only with somebody at the robot: a setting that lets the servos do more, a first key, the boot loader.
     NeedsPresence,
     /// No fresh keep-alive was heard just now: this came late, or the link was only just opened. Ask again.
     NotFresh,
@@ -139,13 +136,28 @@ pub enum Refusal {
         /// From the playing table's first knot to this one's, 1e-4 rad.
         step: i32,
     },
+    /// The table is not the one that the host checked.
+    OtherTable {
+        /// CRC-32C of the robot's.
+        held: u32,
+    },
+    /// The settings are not those that the host checked.
+    OtherSettings {
+        /// Hash of the robot's.
+        held: u32,
+    },
+    /// Other e-stops came than the ones to be cleared.
+    EStopCount {
+        /// E-stops since the start.
+        count: u32,
+    },
 }
 
 impl Refusal {
     /// A number for each reason, fixed for ever: its place in this list.
     pub fn number(&self) -> u8 {
         match self {
-            Self::StaleSession { .. } => 0,
+            Self::StaleSession => 0,
             Self::Superseded { .. } => 1,
             Self::Version { .. } => 2,
             Self::NotUnderstood => 3,
@@ -165,7 +177,7 @@ impl Refusal {
             Self::RateLimit { .. } => 17,
             Self::NotClosed { .. } => 18,
             Self::LinksCross { .. } => 19,
-            Self::DetachedEndless => 20,
+            Self::DetachedTooLong => 20,
             Self::SwapPending => 21,
             Self::BadValue { .. } => 22,
             Self::SlowToNeutral { .. } => 23,
@@ -175,11 +187,14 @@ impl Refusal {
             Self::NeedsPresence => 27,
             Self::NotFresh => 28,
             Self::NotJoined { .. } => 29,
+            Self::OtherTable { .. } => 30,
+            Self::OtherSettings { .. } => 31,
+            Self::EStopCount { .. } => 32,
         }
     }
 }
 
-/// Where the side links come too close.
+/// Place at which the side links come too close.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum CrossingPlace {
     /// In the gait, after this knot.
@@ -193,17 +208,18 @@ impl core::fmt::Display for Refusal {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let rad = |units: i32| f64::from(units) * 1e-4;
         match *self {
-            Self::StaleSession { open } => write!(
-                f,
-                "the robot's open session is {open}, not this one: connect again"
-            ),
+            Self::StaleSession => {
+                write!(f, "the robot's open session is not this one: connect again")
+            }
             Self::Superseded { last } => write!(
                 f,
                 "request {last} acted later than this one; this one did nothing"
             ),
             Self::Version { min, current } => write!(
                 f,
-                "the robot speaks protocol {min} to {current}: match firmware and program"
+                "the robot speaks protocol {} to {}: match firmware and program",
+                VersionName(min),
+                VersionName(current)
             ),
             Self::NotUnderstood => write!(
                 f,
@@ -296,9 +312,9 @@ impl core::fmt::Display for Refusal {
                     }
                 }
             }
-            Self::DetachedEndless => write!(
+            Self::DetachedTooLong => write!(
                 f,
-                "a play without end cannot be detached: give a number of cycles"
+                "a detached play lasts at most an hour, with what follows it: give fewer cycles, or stay connected"
             ),
             Self::SwapPending => write!(
                 f,
@@ -327,7 +343,7 @@ impl core::fmt::Display for Refusal {
             ),
             Self::NeedsPresence => write!(
                 f,
-                "a first key, lengths more than a tenth from those it was built with, limits beyond them and its boot loader are for somebody at the robot: connect over its USB cable, or close its bench jumper (on a Pico press BOOTSEL) and try again within two minutes"
+                "a first key, the boot loader and settings that let the servos do more (another direction, a wider pulse range, centre, slope and trim beyond 1 degree in sum, limits beyond those as built, lengths more than a tenth from them) are for somebody at the robot: connect over its USB cable, or close its bench jumper (on a Pico press BOOTSEL) and try again within two minutes"
             ),
             Self::NotFresh => write!(
                 f,
@@ -337,6 +353,18 @@ impl core::fmt::Display for Refusal {
                 f,
                 "{joint:?} joint would jump {:.4} rad to the gait that follows: gaits that follow each other start at one shape",
                 rad(step)
+            ),
+            Self::OtherTable { held } => write!(
+                f,
+                "the robot holds another gait ({held:08x}) than the one you checked: upload it again"
+            ),
+            Self::OtherSettings { held } => write!(
+                f,
+                "the robot's settings ({held:08x}) are not those that the gait was checked for (geometry, limits, servo maps): check it again"
+            ),
+            Self::EStopCount { count } => write!(
+                f,
+                "another e-stop came since ({count} in all): look at the robot, then clear it again"
             ),
         }
     }

@@ -1,7 +1,8 @@
-//! What the robot answers to a request. Variants are only appended.
+//! Replies of the robot to requests. Variants are only appended.
 
 use crate::{
-    Configuration, DecodeCounters, Flags, PulseRange, Refusal, ServoSettings, StateName, StopCause,
+    Checked, Configuration, DecodeCounters, Flags, PulseRange, Refusal, ServoSettings, StateName,
+    StopCause,
 };
 use heapless::String;
 use postcard_schema::Schema;
@@ -43,7 +44,7 @@ pub enum Reply {
     PulseRange(PulseRange),
 }
 
-/// What the bench asks for.
+/// Presence, short starts and the configuration as built.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
 pub struct BenchStatus {
     /// Seconds for which the bench window is still open; 0: it is closed.
@@ -56,7 +57,7 @@ pub struct BenchStatus {
     pub built: Configuration,
 }
 
-/// What the robot is doing.
+/// State of the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
 pub struct Status {
     /// The robot's clock: µs since its start.
@@ -69,7 +70,7 @@ pub struct Status {
     pub flags: Flags,
     /// Cycles done of the last play.
     pub cycle: u32,
-    /// Cycles asked for; 0 is without end.
+    /// Cycles requested; 0 is without end.
     pub cycles: u32,
     /// Duration of a cycle, µs; 0 before the first play.
     pub period_us: u32,
@@ -83,6 +84,20 @@ pub struct Status {
     pub table: Option<TableInfo>,
     /// Bytes held of the upload that is open; `None`: no upload is open.
     pub upload: Option<u16>,
+    /// [`crate::settings_crc32`] of the settings in force.
+    pub settings_crc32: u32,
+    /// E-stops since the start; [`crate::Request::ClearEStop`] names this count.
+    pub estops: u32,
+}
+
+impl Status {
+    /// Table and settings that the robot holds, for a play of them; without a table its checksum is 0.
+    pub fn held(&self) -> Checked {
+        Checked {
+            table_crc32: self.table.map_or(0, |table| table.crc32),
+            settings_crc32: self.settings_crc32,
+        }
+    }
 }
 
 /// Names the active table by its evidence.
@@ -98,7 +113,7 @@ pub struct TableInfo {
     pub min_period_us: u32,
 }
 
-/// What was received, refused and dropped since the start.
+/// Counts of frames and requests since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Counters {
     /// The frame decoder's.

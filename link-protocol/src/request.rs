@@ -1,6 +1,6 @@
-//! What a host may ask of the robot. Variants are only appended.
+//! Requests of a host. Variants are only appended.
 
-use crate::{Configuration, Joint, Key, MAX_CHUNK, PulseRange, ServoSettings};
+use crate::{Configuration, Joint, Key, MAX_CHUNK, PulseRange, RequestClass, ServoSettings};
 use heapless::Vec;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
@@ -17,19 +17,20 @@ pub enum Request {
     Counters,
     /// The configuration in force. Answered by [`crate::Reply::Configuration`].
     Configuration,
-    /// Sets the configuration; only while Stopped. Lengths more than a tenth from those as built, and limits beyond those as
-    /// built, need presence.
+    /// Sets the configuration. Lengths more than a tenth from those as built, and limits beyond those as built, need presence.
     Configure(Configuration),
     /// The settings of a servo. Answered by [`crate::Reply::Servo`].
     Servo(Joint),
-    /// Sets the map of a servo; only while Stopped.
+    /// Sets the map of a servo. `reversed`, and a map that moves a joint by more than 1° from where it was last set with
+    /// presence, need presence.
     SetServo {
         /// Which joint.
         joint: Joint,
         /// Its map.
         settings: ServoSettings,
     },
-    /// Sets a servo's trim: angle in units of 1e-4 rad added to every set-point. Not while moving; saved when Stopped.
+    /// Sets a servo's trim: angle in units of 1e-4 rad added to every set-point. Not while moving; saved when Stopped. Beyond
+    /// 1° from where the joint was last set with presence it needs presence.
     Trim {
         /// Which joint.
         joint: Joint,
@@ -45,8 +46,8 @@ pub enum Request {
         /// Sequence number of the upload's [`Request::Begin`].
         upload: u16,
     },
-    /// Turns pulses on at the last commanded set-point (after a reset: neutral); the servo may jump to it.
-    Arm(Arm),
+    /// Turns pulses on at the last commanded set-point (after a reset: neutral); the servo may jump to it. Clears no latch.
+    Arm,
     /// Plays the active table, after a soft start.
     Play(Play),
     /// Holds the pose. Detached: holds it without a link too, for at most 60 s in all, then stops.
@@ -67,15 +68,15 @@ pub enum Request {
     CrashMessage,
     /// Names the table that is active. Answered by [`crate::Reply::Table`].
     Table,
-    /// Sets, changes or removes the shared key; only while Stopped; in force from the next session on. A robot with a key
+    /// Sets, changes or removes the shared key, and closes the session: greet again, with the new key. A robot with a key
     /// takes it only signed with that key; the first key needs presence. The new key crosses the wire in the clear: send it
     /// over a cable.
     SetKey(Option<Key>),
-    /// What only the bench asks for: presence, short starts. Answered by [`crate::Reply::Bench`].
+    /// Presence, short starts and the configuration as built. Answered by [`crate::Reply::Bench`].
     Bench,
     /// The pulses that a servo's end stops allow. Answered by [`crate::Reply::PulseRange`].
     PulseRange(Joint),
-    /// Sets them; only while Stopped.
+    /// Sets them. A range that is wider at either end than the one in force needs presence.
     SetPulseRange {
         /// Which joint.
         joint: Joint,
@@ -83,9 +84,11 @@ pub enum Request {
         range: PulseRange,
     },
     /// Clears a latched e-stop to Stopped, without arming.
-    ClearEStop,
-    /// Leaves the firmware for the chip's boot loader, which takes a new one over USB; only while Stopped, with presence. The
-    /// answer comes before.
+    ClearEStop {
+        /// [`crate::Status::estops`] as the host last read it: an e-stop that came since is not cleared.
+        count: u32,
+    },
+    /// Leaves the firmware for the chip's boot loader, which takes a new one over USB. The answer comes before.
     EnterBootLoader,
     /// Checks an upload as [`Request::Commit`] does, and plays it once the last cycle of the play under way is done (of a play
     /// without end: the present one), without a pause. Both tables start at the same knot. Answered by
@@ -94,17 +97,14 @@ pub enum Request {
 }
 
 impl Request {
-    /// It ends motion: it acts in any session and under any number, and the more often the safer.
+    /// Ends motion: acts in any session and under any number.
     pub fn is_stop(&self) -> bool {
-        matches!(self, Self::Stop | Self::EStop)
+        self.class(|| true) == RequestClass::Stop
     }
 
-    /// It turns pulses on or sets joints in motion: it takes a host whose keep-alives are fresh.
+    /// Turns pulses on, or changes the motion of a powered robot.
     pub fn is_powering(&self) -> bool {
-        matches!(
-            self,
-            Self::Arm(_) | Self::Play(_) | Self::Resume | Self::Follow(_)
-        )
+        self.class(|| true) == RequestClass::Powering
     }
 }
 
@@ -130,31 +130,38 @@ pub struct Chunk {
     pub data: Vec<u8, MAX_CHUNK>,
 }
 
-/// Turns pulses on.
+/// Table and settings for which the host has checked a play. A robot that holds others refuses it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
-pub struct Arm {
-    /// Clears a latched e-stop too; without it arming is refused then.
-    pub clear_estop: bool,
+pub struct Checked {
+    /// CRC-32C of the table's bytes, as [`Begin::crc32`].
+    pub table_crc32: u32,
+    /// [`crate::settings_crc32`] of the settings in force.
+    pub settings_crc32: u32,
 }
 
 /// Plays the active table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Play {
-    /// Number of cycles; 0 plays until told otherwise.
+    /// Number of cycles; 0 plays until stopped.
     pub cycles: u32,
     /// Duration of a cycle, µs.
     pub period_us: u32,
-    /// Plays on to its end when the link falls silent; needs a number of cycles.
+    /// Plays on to its end when the link falls silent; needs a number of cycles, and at most [`crate::MAX_DETACHED_US`].
     pub detached: bool,
+    /// Table and settings that the host checked.
+    pub checked: Checked,
 }
 
-/// What follows the play under way; it plays on detached where that one does.
+/// Successor of the play under way; detached if that play is. The two together then last at most
+/// [`crate::MAX_DETACHED_US`] from now.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Follow {
     /// Sequence number of the upload's [`Request::Begin`].
     pub upload: u16,
-    /// Number of cycles; 0 plays until told otherwise.
+    /// Number of cycles; 0 plays until stopped.
     pub cycles: u32,
     /// Duration of a cycle, µs.
     pub period_us: u32,
+    /// Uploaded table and settings that the host checked.
+    pub checked: Checked,
 }

@@ -41,13 +41,13 @@ pub struct Binding {
 /// A key bound to a session: signs and verifies its frames.
 ///
 /// ```
-/// use link_protocol::{Binding, Decoder, Header, Key, MAX_ENCODED, Message, Ping, Seal, encode_signed};
+/// use link_protocol::{Binding, Decoder, Header, Key, MAX_ENCODED, Message, Request, Seal, encode_signed};
 ///
 /// let binding = Binding { boot_nonce: 1, session: 2, host_nonce: 3 };
 /// let seal = Seal::new(&Key([7; Key::LEN]), binding);
 /// let mut frame = [0; MAX_ENCODED];
-/// let ping = Message::Ping(Ping { host_us: 5 });
-/// let length = encode_signed(Header::new(2, 1), &ping, &seal, 10, &mut frame).unwrap();
+/// let status = Message::Request(Request::Status);
+/// let length = encode_signed(Header::new(2, 1), &status, &seal, 10, &mut frame).unwrap();
 ///
 /// let mut decoder = Decoder::new();
 /// let received = frame[..length].iter().find_map(|&byte| decoder.push(byte)).unwrap();

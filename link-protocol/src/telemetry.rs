@@ -1,14 +1,14 @@
-//! What the robot tells unasked, and the clock.
+//! Telemetry, keep-alives and the clock.
 
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
-/// What the brain is doing; its glossary and diagram stand in `gait-player`.
+/// State of the brain; `gait-player` has the glossary and the diagram.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum StateName {
     /// Pulses off.
     Stopped,
-    /// Pulses off, latched until armed with `clear_estop`.
+    /// Pulses off, latched until [`crate::Request::ClearEStop`].
     EStopped,
     /// Pulses on, standing still.
     Holding,
@@ -24,7 +24,7 @@ pub enum StateName {
     Settling,
 }
 
-/// Why the robot stops or last stopped; the later the more severe.
+/// Cause of the last stop; the later in this list the more severe.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, Schema)]
 pub enum StopCause {
     /// It has not moved since its start.
@@ -132,16 +132,9 @@ pub struct Pose {
     pub theta: f32,
 }
 
-/// Host to robot, outside the order of requests: what time is it? Version 1's; it feeds no lease of a robot of version 2.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
-pub struct Ping {
-    /// The host's clock when it sent this, µs.
-    pub host_us: u64,
-}
-
-/// Host to robot, outside the order of requests: the keep-alive of version 2, and its ping. It feeds the lease where it is
-/// fresh: where the host has heard the robot not long ago, and later than it had when it sent the one before. So neither a
-/// recorded one nor those that a dead host left in a buffer feed anything.
+/// Host to robot, outside the order of requests: the keep-alive, and the question for the time. It renews the lease if it is
+/// fresh: if the host has heard the robot at most a second ago, and later than by any keep-alive before. So neither a
+/// recorded keep-alive nor those that a dead host left in a buffer renew the lease.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Heartbeat {
     /// The host's clock when it sent this, µs.
@@ -150,12 +143,12 @@ pub struct Heartbeat {
     pub heard_us: u64,
 }
 
-/// Robot to host: the answer to [`Ping`] and [`Heartbeat`], under its sequence number.
+/// Robot to host: the answer to [`Heartbeat`], under its sequence number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Pong {
-    /// As in the question.
+    /// As in the [`Heartbeat`].
     pub host_us: u64,
-    /// The robot's clock when the ping was read, µs.
+    /// The robot's clock when the keep-alive was read, µs.
     pub received_us: u64,
     /// The robot's clock when this was handed to the transmitter, µs.
     pub sent_us: u64,

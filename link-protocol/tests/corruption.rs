@@ -23,7 +23,7 @@ fn accepted(
 fn short_frames(most: usize) -> Vec<(&'static str, Vec<u8>)> {
     let frames = samples::messages()
         .into_iter()
-        .map(|(name, message)| (name, samples::frame(2, &message)));
+        .map(|(name, message)| (name, samples::frame(&message)));
     frames.filter(|(_, frame)| frame.len() <= most).collect()
 }
 
@@ -106,7 +106,7 @@ fn corrupted_streams(seed: u64, frames: u64) -> link_protocol::DecodeCounters {
     let messages = samples::messages();
     let encoded: Vec<_> = messages
         .iter()
-        .map(|(_, message)| samples::frame(2, message))
+        .map(|(_, message)| samples::frame(message))
         .collect();
     let whole: HashSet<&[u8]> = encoded
         .iter()

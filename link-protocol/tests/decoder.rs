@@ -32,7 +32,7 @@ fn raw_frame(kind: u8, version: u8, body: &[u8]) -> Vec<u8> {
 #[test]
 fn every_message_comes_back_and_fits() {
     for (name, message) in samples::messages() {
-        let frame = samples::frame(2, &message);
+        let frame = samples::frame(&message);
         assert!(frame.len() < MAX_ENCODED, "{name}");
         let mut decoder = Decoder::new();
         let received = push_all(&mut decoder, &frame);
@@ -40,7 +40,7 @@ fn every_message_comes_back_and_fits() {
         assert_eq!(received[0].message, Ok(message), "{name}");
         assert_eq!(
             (received[0].header.version, received[0].signature),
-            (2, None),
+            (PROTOCOL_CURRENT, None),
             "{name}"
         );
         assert_eq!(
@@ -169,6 +169,8 @@ fn the_largest_values_of_status_and_counters_fit() {
             min_period_us: worst,
         }),
         upload: Some(u16::MAX),
+        settings_crc32: u32::MAX,
+        estops: u32::MAX,
     };
     let crash = heapless::String::try_from("x".repeat(96).as_str()).unwrap();
     for reply in [
@@ -184,7 +186,7 @@ fn the_largest_values_of_status_and_counters_fit() {
 #[test]
 fn every_split_point_decodes_the_same() {
     for (_, message) in samples::messages() {
-        let frame = samples::frame(2, &message);
+        let frame = samples::frame(&message);
         for split in 0..=frame.len() {
             let mut decoder = Decoder::new();
             let mut received = push_all(&mut decoder, &frame[..split]);
@@ -197,7 +199,7 @@ fn every_split_point_decodes_the_same() {
 
 #[test]
 fn each_fault_has_its_counter() {
-    let good = samples::frame(2, &Message::KeepAlive);
+    let good = samples::frame(&Message::Request(Request::Stop));
     let mut decoder = Decoder::new();
     // A flipped bit within the CRC.
     let mut flipped = good.clone();
@@ -229,24 +231,32 @@ fn each_fault_has_its_counter() {
     };
     expect(
         &mut decoder,
-        &raw_frame(6, 1, &[9]),
+        &raw_frame(7, PROTOCOL_CURRENT, &[0, 0, 0, 9]),
         BodyError::TrailingBytes(1),
     );
     expect(
         &mut decoder,
-        &raw_frame(3, 1, &[0, 0]),
+        &raw_frame(3, PROTOCOL_CURRENT, &[0, 0]),
         BodyError::TrailingBytes(1),
     );
-    expect(&mut decoder, &raw_frame(3, 1, &[200]), BodyError::Malformed);
-    expect(&mut decoder, &raw_frame(3, 1, &[]), BodyError::Malformed);
     expect(
         &mut decoder,
-        &raw_frame(0, 1, &[]),
+        &raw_frame(3, PROTOCOL_CURRENT, &[200]),
+        BodyError::Malformed,
+    );
+    expect(
+        &mut decoder,
+        &raw_frame(3, PROTOCOL_CURRENT, &[]),
+        BodyError::Malformed,
+    );
+    expect(
+        &mut decoder,
+        &raw_frame(0, PROTOCOL_CURRENT, &[]),
         BodyError::UnknownKind(0),
     );
     expect(
         &mut decoder,
-        &raw_frame(10, 1, &[]),
+        &raw_frame(10, PROTOCOL_CURRENT, &[]),
         BodyError::UnknownKind(10),
     );
     expect(&mut decoder, &raw_frame(6, 3, &[]), BodyError::Version(3));
@@ -308,7 +318,11 @@ fn a_signed_frame_too_short_for_its_signature_is_no_message() {
 fn encoding_needs_room() {
     let mut short = [0; MAX_ENCODED - 1];
     assert_eq!(
-        encode(Header::new(0, 0), &Message::KeepAlive, &mut short),
+        encode(
+            Header::new(0, 0),
+            &Message::Request(Request::Stop),
+            &mut short
+        ),
         Err(EncodeError::BufferTooShort)
     );
     let mut out = [0; MAX_ENCODED];
@@ -360,7 +374,7 @@ proptest! {
         prop_assert!(push_all(&mut decoder, &garbage).is_empty());
         // The burst start ends the garbage.
         prop_assert!(decoder.push(0).is_none());
-        let received = push_all(&mut decoder, &samples::frame(2, message));
+        let received = push_all(&mut decoder, &samples::frame(message));
         prop_assert_eq!(received.len(), 1);
         prop_assert_eq!(received[0].message.as_ref(), Ok(message));
     }

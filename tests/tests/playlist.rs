@@ -157,9 +157,10 @@ fn play<P: Port>(robot: &mut Robot<P>, legs: Vec<Leg>) -> Result<(), LinkError> 
         })
         .unwrap();
     robot.arm(false).unwrap();
+    let settings_crc32 = robot.status().unwrap().settings_crc32;
     robot.play(legs[0].cycles, legs[0].period, false).unwrap();
     let mut order = Vec::new();
-    let played = Sequence::playing_first(legs).go_on(robot, |now| {
+    let played = Sequence::playing_first(legs, settings_crc32).go_on(robot, |now| {
         order.push(now.leg);
         ControlFlow::Continue(())
     });

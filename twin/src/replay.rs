@@ -16,8 +16,8 @@ use gait_player::{
 };
 use link_protocol::{
     Begin, Chunk, Configuration, Decoder, Header, Heartbeat, Hello, HelloReply, MAX_CHUNK,
-    MAX_ENCODED, Message, POWER_SINCE, PROTOCOL_CURRENT, PROTOCOL_MIN, Request, SCHEMA_KEY,
-    StateName, Telemetry, crc32c, encode,
+    MAX_ENCODED, Message, PROTOCOL_CURRENT, PROTOCOL_MIN, Request, SCHEMA_KEY, StateName,
+    Telemetry, crc32c, encode,
 };
 use swimmer_files::LinkFrame;
 
@@ -66,6 +66,9 @@ pub struct Replayed {
     pub seconds: f64,
     /// CRC of the table that the robot held at the start and the replay did not: name it, or expect a refusal.
     pub missing_table: Option<u32>,
+    /// Hash of the settings that a play of the log names, if the replay has others: the log does not hold all that the robot
+    /// was set to.
+    pub other_settings: Option<u32>,
 }
 
 /// What the robot told and what the brain does at the same tick.
@@ -122,6 +125,7 @@ pub fn replay(frames: &[LinkFrame], table: Option<&GaitTable>) -> Result<Replaye
         missing_table: events
             .table_at_start
             .filter(|crc32| table.is_none_or(|table| crc32c(table.bytes()) != *crc32)),
+        other_settings: life.other_settings,
     })
 }
 
@@ -147,6 +151,8 @@ struct Life {
     /// The brain has told something.
     greeted: bool,
     battery_mv: Option<u16>,
+    /// Hash of the settings that a play named, and that this brain does not have.
+    other_settings: Option<u32>,
 }
 
 impl Life {
@@ -164,6 +170,7 @@ impl Life {
             still: 0,
             greeted: false,
             battery_mv: events.battery_at_start,
+            other_settings: None,
         };
         if events.state_at_start == StateName::EStopped {
             life.receive(&frame(0, 0, &Message::Request(Request::EStop)));
@@ -174,9 +181,38 @@ impl Life {
     /// Takes bytes in the middle between two ticks.
     fn receive(&mut self, bytes: &[u8]) {
         let now = time_of(self.tick) - u64::from(TICK_US) / 2;
-        for bytes in today(bytes, now, self.origin_us) {
-            self.brain.receive(now, VIA, &bytes);
+        let bytes = on_this_clock(bytes, now, self.origin_us);
+        let bytes = self.as_held_here(bytes);
+        self.brain.receive(now, VIA, &bytes);
+    }
+
+    /// A play names the settings of the robot. If this brain has others, it plays with its own, and that is reported. A clear of
+    /// e-stops names how many the robot had, of which the log may not hold all.
+    fn as_held_here(&mut self, bytes: Vec<u8>) -> Vec<u8> {
+        let mut decoder = Decoder::new();
+        let Some(mut received) = bytes.iter().find_map(|&byte| decoder.push(byte)) else {
+            return bytes;
+        };
+        let checked = match &mut received.message {
+            Ok(Message::Request(Request::Play(play))) => &mut play.checked,
+            Ok(Message::Request(Request::Follow(follow))) => &mut follow.checked,
+            Ok(Message::Request(Request::ClearEStop { .. })) => {
+                let count = self.brain.estops();
+                let clear = Message::Request(Request::ClearEStop { count });
+                return frame(received.header.session, received.header.sequence, &clear);
+            }
+            _ => return bytes,
+        };
+        let settings = self.brain.held().settings_crc32;
+        if checked.settings_crc32 == settings {
+            return bytes;
         }
+        self.other_settings.get_or_insert(checked.settings_crc32);
+        checked.settings_crc32 = settings;
+        let Ok(message) = received.message else {
+            return bytes;
+        };
+        frame(received.header.session, received.header.sequence, &message)
     }
 
     /// Lives until a request is read just before a tick. A line keeps the order: what was sent before is read before.
@@ -279,17 +315,14 @@ fn time_of(tick: u64) -> u64 {
     (tick + 1) * u64::from(TICK_US)
 }
 
-/// What was sent, as this brain is to hear it: keep-alives that tell times of its own clock, as fresh as they were; and what a
-/// host of version 1 sent as one of today would, for whatever it sent fed its lease, and it could power the servos.
-fn today(bytes: &[u8], now_us: u64, origin_us: u64) -> Vec<Vec<u8>> {
+/// Bytes that were sent, with the times of keep-alives moved to this brain's clock: as fresh as they were.
+fn on_this_clock(bytes: &[u8], now_us: u64, origin_us: u64) -> Vec<u8> {
     let mut decoder = Decoder::new();
     let Some(received) = bytes.iter().find_map(|&byte| decoder.push(byte)) else {
-        return vec![bytes.to_vec()];
+        return bytes.to_vec();
     };
     let Header {
-        version,
-        session,
-        sequence,
+        session, sequence, ..
     } = received.header;
     let heartbeat = |heard_us| {
         let heartbeat = Heartbeat {
@@ -300,25 +333,15 @@ fn today(bytes: &[u8], now_us: u64, origin_us: u64) -> Vec<Vec<u8>> {
     };
     match received.message {
         // Its host had heard nothing yet.
-        Ok(Message::Heartbeat(told)) if told.heard_us == 0 => vec![heartbeat(0)],
+        Ok(Message::Heartbeat(told)) if told.heard_us == 0 => heartbeat(0),
         Ok(Message::Heartbeat(told)) => {
             // Frames are read here in the middle of a tick: what was heard later in it counts as heard just now.
             let heard_us = told.heard_us.wrapping_sub(origin_us);
             let heard_us = heard_us.wrapping_add(u64::from(TICK_US));
             let ahead = heard_us.wrapping_sub(now_us) <= 2 * u64::from(TICK_US);
-            vec![heartbeat(if ahead { now_us } else { heard_us })]
+            heartbeat(if ahead { now_us } else { heard_us })
         }
-        Ok(Message::Hello(hello)) if version < POWER_SINCE => {
-            let hello = Hello {
-                protocol_current: PROTOCOL_CURRENT,
-                ..hello
-            };
-            vec![frame(session, sequence, &Message::Hello(hello))]
-        }
-        Ok(message) if version < POWER_SINCE => {
-            vec![heartbeat(now_us), frame(session, sequence, &message)]
-        }
-        _ => vec![bytes.to_vec()],
+        _ => bytes.to_vec(),
     }
 }
 

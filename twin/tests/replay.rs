@@ -120,7 +120,7 @@ fn a_log_gives_the_same_pulses() {
     let frames = recorded(twin(), everything);
     let told = replay(&frames, None).unwrap();
     assert_eq!(told.different, 0, "{told:#?}");
-    assert!(told.compared > 600 && told.requests == 13, "{told:?}");
+    assert!(told.compared > 600 && told.requests == 14, "{told:?}");
     assert_eq!(told.missing_table, None);
 }
 
@@ -161,7 +161,7 @@ fn so_does_one_that_was_signed_without_the_key() {
     assert!(frames.iter().filter(signed).count() > 300);
     let told = replay(&frames, None).unwrap();
     assert_eq!(told.different, 0, "{told:#?}");
-    assert!(told.compared > 600 && told.requests == 13, "{told:?}");
+    assert!(told.compared > 600 && told.requests == 14, "{told:?}");
 }
 
 /// A host without the right key moves nothing, not even a clock: there is nothing to compare.
@@ -224,6 +224,27 @@ fn a_gait_from_before_the_log_is_named_from_outside() {
             "{told:?}"
         );
     }
+}
+
+/// A play names the settings of the robot: a replay with others reports that the log does not hold them.
+#[test]
+fn settings_from_before_the_log_are_reported() {
+    let mut robot = Robot::connect(Box::new(twin()) as Box<dyn Port>, 1).unwrap();
+    robot.trim(link_protocol::Joint::Front, 0.1).unwrap();
+    let frames = recorded(robot.into_port(), |robot| {
+        live(robot, 1.0);
+        upload(robot, &table(1.0));
+        robot.arm(false).unwrap();
+        robot.play(1, Duration::from_secs(4), false).unwrap();
+        robot
+            .wait_until_finished(|_| ControlFlow::Continue(()))
+            .unwrap();
+    });
+    let told = replay(&frames, None).unwrap();
+    assert!(
+        told.different > 50 && told.other_settings.is_some(),
+        "{told:?}"
+    );
 }
 
 #[test]

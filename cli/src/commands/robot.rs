@@ -159,7 +159,7 @@ struct Play {
     /// Return once the robot plays; it plays on to its end without the link
     #[arg(long, requires = "cycles")]
     detach: bool,
-    /// How long the robot may play on detached, as 90min, 2h or seconds; left out: an hour
+    /// Refuse a detached play that is longer than this, as 30min or seconds; an hour at most
     #[arg(long = "for", value_name = "TIME", value_parser = time, requires = "detach")]
     at_most: Option<f64>,
     /// Start nothing: wait for the end of the play that goes on detached, as if it had not been; Ctrl-C stops it

@@ -174,12 +174,12 @@ fn robot_of(versions: [u8; 2], schema_key: [u8; 8]) -> Device {
 
 #[test]
 fn a_robot_of_a_later_version() {
-    insta::assert_snapshot!(robot_of([3, 4], SCHEMA_KEY).sentence(), @"error: the robot's firmware 0.9.2 (0123abcd) speaks versions 3 to 4 of the protocol, this program 1 to 2: update this program");
+    insta::assert_snapshot!(robot_of([0x30, 0x41], SCHEMA_KEY).sentence(), @"error: the robot's firmware 0.9.2 (0123abcd) speaks versions 3.0 to 4.1 of the protocol, this program 1.0 to 1.0: update this program");
 }
 
 #[test]
 fn a_robot_of_an_earlier_version() {
-    insta::assert_snapshot!(robot_of([0, 0], SCHEMA_KEY).sentence(), @"error: the robot's firmware 0.9.2 (0123abcd) speaks versions 0 to 0 of the protocol, this program 1 to 2: update the robot's firmware");
+    insta::assert_snapshot!(robot_of([1, 2], SCHEMA_KEY).sentence(), @"error: the robot's firmware 0.9.2 (0123abcd) speaks versions 0.1 to 0.2 of the protocol, this program 1.0 to 1.0: update the robot's firmware");
 }
 
 #[test]
@@ -187,7 +187,7 @@ fn a_robot_of_another_build() {
     let mut filters = insta::Settings::clone_current();
     filters.add_filter("[0-9a-f]{16}", "[KEY]");
     filters.bind(|| {
-        insta::assert_snapshot!(robot_of([1, 2], [1; 8]).sentence(), @"error: the robot's firmware 0.9.2 (0123abcd) and this program both speak version 2 of the protocol but disagree on its messages (keys [KEY] and [KEY]): build both from the same commit");
+        insta::assert_snapshot!(robot_of([0x10, 0x10], [1; 8]).sentence(), @"error: the robot's firmware 0.9.2 (0123abcd) and this program both speak version 1.0 of the protocol but disagree on its messages (keys [KEY] and [KEY]): build both from the same commit");
     });
 }
 

@@ -1,4 +1,5 @@
-//! What a request that may act does. Each arm of [`Brain::act`] is one request's whole meaning.
+//! Effects of requests that may act. Each arm of [`Brain::act`] is the whole effect of one request; authority was checked
+//! before ([`super::requests`]).
 
 use super::requests::Asked;
 use super::settings::Settings;
@@ -9,28 +10,28 @@ use crate::route::Route;
 use crate::servo::ServoMap;
 use crate::table::check::Checker;
 use link_protocol::{
-    Arm, BenchStatus, Configuration, Follow, Joint, Play, PulseRange, Refusal, Reply, Request,
-    ServoSettings,
+    BenchStatus, Checked, Configuration, Follow, Joint, MAX_DETACHED_US, Play, PulseRange, Refusal,
+    Reply, Request, ServoSettings,
 };
 
-/// What a request comes to.
+/// Outcome of a request: its reply, or `None` if that comes later.
 type Outcome = Result<Option<Reply>, Refusal>;
 
 const DONE: Outcome = Ok(Some(Reply::Done));
-/// The answer comes when the work is done.
+/// The reply comes when the work is done.
 const LATER: Outcome = Ok(None);
 
 impl Brain {
-    /// Does what is asked; `None` where the answer comes later.
+    /// Does what is requested; `None` if the reply comes later.
     pub(super) fn act(&mut self, now_us: u64, asked: Asked, request: &Request) -> Outcome {
         match request {
             Request::Status => Ok(Some(Reply::Status(self.status(now_us)))),
             Request::Counters => Ok(Some(Reply::Counters(self.counters()))),
             Request::Configuration => Ok(Some(Reply::Configuration(self.settings.configuration))),
-            Request::Configure(configuration) => self.configure(now_us, asked, configuration),
+            Request::Configure(configuration) => self.configure(configuration),
             Request::Servo(joint) => Ok(Some(Reply::Servo(self.settings.servos[joint.index()]))),
             Request::SetServo { joint, settings } => {
-                self.only_stopped()?;
+                self.only_idle()?;
                 settings::check_servo(settings, &self.firmware_limits)?;
                 self.change_servos(|servos| servos.servos[joint.index()] = *settings)?;
                 DONE
@@ -40,7 +41,7 @@ impl Brain {
                 Ok(Some(Reply::PulseRange(range)))
             }
             Request::SetPulseRange { joint, range } => {
-                self.only_stopped()?;
+                self.only_idle()?;
                 self.set_pulse_range(*joint, *range)
             }
             Request::Trim { joint, trim } => self.trim(*joint, *trim),
@@ -54,7 +55,7 @@ impl Brain {
             Request::Chunk(_) => Err(Refusal::NoUpload),
             Request::Commit { upload } => self.commit(asked, *upload, None),
             Request::Follow(follow) => self.follow(asked, *follow),
-            Request::Arm(arm) => self.arm(*arm),
+            Request::Arm => self.arm(),
             Request::Play(play) => self.play(asked, *play),
             Request::Pause { detached } => self.pause(now_us, *detached),
             Request::Resume => match self.state {
@@ -79,11 +80,7 @@ impl Brain {
             Request::CrashMessage => Ok(Some(Reply::CrashMessage(self.boot.crash_message.clone()))),
             Request::Table => Ok(Some(Reply::Table(self.table_info()))),
             Request::SetKey(key) => {
-                self.only_stopped()?;
-                // A key that holds already signed this: only the first one is anybody's.
-                if self.settings.key.is_none() && key.is_some() {
-                    self.only_present(now_us, asked)?;
-                }
+                self.only_idle()?;
                 self.settings.key = *key;
                 self.persist.settings_changed();
                 DONE
@@ -94,7 +91,10 @@ impl Brain {
                 short_starts: self.starts.runs,
                 built: self.built,
             }))),
-            Request::ClearEStop => match self.state {
+            Request::ClearEStop { count } => match self.state {
+                State::EStopped if *count != self.estops => {
+                    Err(Refusal::EStopCount { count: self.estops })
+                }
                 State::EStopped => {
                     self.resets.estop = false;
                     self.state = State::Stopped;
@@ -104,8 +104,7 @@ impl Brain {
                 state => Err(Refusal::WrongState(state.name())),
             },
             Request::EnterBootLoader => {
-                self.only_stopped()?;
-                self.only_present(now_us, asked)?;
+                self.only_idle()?;
                 // This run ends early, but not by a fault.
                 self.clear_starts();
                 self.bench.leave(now_us);
@@ -114,33 +113,14 @@ impl Brain {
         }
     }
 
-    /// Somebody is at the robot: at the other end of its cable, or within the bench window.
-    fn only_present(&self, now_us: u64, asked: Asked) -> Result<(), Refusal> {
-        if asked.transport == Transport::Usb || self.bench.open(now_us) {
-            Ok(())
-        } else {
-            Err(Refusal::NeedsPresence)
-        }
-    }
-
-    fn configure(&mut self, now_us: u64, asked: Asked, wanted: &Configuration) -> Outcome {
-        self.only_stopped()?;
+    fn configure(&mut self, wanted: &Configuration) -> Outcome {
+        self.only_idle()?;
         let model = settings::check_configuration(wanted, &self.firmware_limits)?;
-        if settings::needs_presence(wanted, &self.settings.configuration, &self.built) {
-            self.only_present(now_us, asked)?;
-        }
         self.model = model;
         self.settings.configuration = *wanted;
         self.settings_changed();
         self.tables.forget_facts();
         DONE
-    }
-
-    fn only_stopped(&self) -> Result<(), Refusal> {
-        match self.state {
-            State::Stopped => self.only_idle(),
-            state => Err(Refusal::WrongState(state.name())),
-        }
     }
 
     fn only_idle(&self) -> Result<(), Refusal> {
@@ -180,12 +160,6 @@ impl Brain {
     /// Sets a trim. While the pulses are on they stand for another angle from then on, and the joint moves back from there
     /// no faster than allowed; where that angle would lie beyond the largest, no stop could reach neutral in its time.
     fn trim(&mut self, joint: Joint, trim: i16) -> Outcome {
-        if !matches!(
-            self.state,
-            State::Stopped | State::EStopped | State::Holding { .. } | State::Paused { .. }
-        ) {
-            return Err(Refusal::WrongState(self.state.name()));
-        }
         settings::check_trim(trim)?;
         let settings = ServoSettings {
             trim,
@@ -217,12 +191,15 @@ impl Brain {
             cycles: follow.cycles,
             period_us: follow.period_us,
             detached: under_way.request.detached,
+            checked: follow.checked,
         };
-        check_play(&play).map_err(|refusal| match refusal {
+        let left_us = self.last_play.unwrap_or(*under_way).left_us();
+        check_play(&play, left_us).map_err(|refusal| match refusal {
             // The period's place among the fields of this request.
             Refusal::BadValue { .. } => Refusal::BadValue { field: 2 },
             refusal => refusal,
         })?;
+        self.check_held(play.checked, Some(self.tables.staging().crc32()))?;
         self.commit(asked, follow.upload, Some(play))
     }
 
@@ -242,8 +219,21 @@ impl Brain {
         LATER
     }
 
-    fn arm(&mut self, arm: Arm) -> Outcome {
-        if self.state == State::EStopped && !arm.clear_estop {
+    /// A play acts only with the table and the settings that its host checked.
+    pub(super) fn check_held(&self, checked: Checked, table: Option<u32>) -> Result<(), Refusal> {
+        let table = table.ok_or(Refusal::NoTable)?;
+        if checked.table_crc32 != table {
+            return Err(Refusal::OtherTable { held: table });
+        }
+        let settings = self.settings_crc32();
+        if checked.settings_crc32 != settings {
+            return Err(Refusal::OtherSettings { held: settings });
+        }
+        Ok(())
+    }
+
+    fn arm(&mut self) -> Outcome {
+        if self.state == State::EStopped {
             return Err(Refusal::EStopped);
         }
         if matches!(
@@ -262,7 +252,6 @@ impl Brain {
         if let Some(wait_s) = self.resets.wait_s() {
             return Err(Refusal::ResetLoop { wait_s });
         }
-        self.resets.estop = false;
         if !matches!(self.state, State::Holding { .. }) {
             self.state = State::Holding {
                 pose: self.commanded,
@@ -283,10 +272,8 @@ impl Brain {
             }
         }
         self.only_idle()?;
-        check_play(&play)?;
-        if self.tables.active().is_none() {
-            return Err(Refusal::NoTable);
-        }
+        check_play(&play, 0)?;
+        self.check_held(play.checked, self.tables.active_crc32())?;
         self.work = Work::Play {
             reply_to: asked,
             play,
@@ -313,7 +300,7 @@ impl Brain {
                 detached: before,
                 play,
             } => {
-                // The minute of a detached pause begins when it is first asked for.
+                // The minute of a detached pause begins with its first request.
                 let since_us = if detached && !before {
                     now_us
                 } else {
@@ -332,13 +319,16 @@ impl Brain {
     }
 }
 
-/// A period that is one, and an end where nobody would end it.
-fn check_play(play: &Play) -> Result<(), Refusal> {
+/// Refuses a period below a tick, and a detached play that would move the robot for too long without a host; `before_us` is the
+/// motion that is ahead of it.
+fn check_play(play: &Play, before_us: u64) -> Result<(), Refusal> {
     if play.period_us < crate::TICK_US {
         return Err(Refusal::BadValue { field: 1 });
     }
-    if play.detached && play.cycles == 0 {
-        return Err(Refusal::DetachedEndless);
+    let duration_us = u64::from(play.cycles) * u64::from(play.period_us);
+    let endless = play.cycles == 0;
+    if play.detached && (endless || before_us.saturating_add(duration_us) > MAX_DETACHED_US) {
+        return Err(Refusal::DetachedTooLong);
     }
     Ok(())
 }

@@ -66,6 +66,7 @@ impl Brain {
         self.drop_work();
         self.leave_play(State::EStopped);
         self.cause = StopCause::EStop;
+        self.estops = self.estops.wrapping_add(1);
         self.resets.estop = true;
     }
 
@@ -82,12 +83,23 @@ impl Brain {
         self.finish(reply_to, Reply::Refused(refusal));
     }
 
-    /// A table that waited for the end of a cycle need not wait any longer.
+    /// Ends a play before its time. A committed table becomes the active one at once; one that was to follow is dropped, for
+    /// it never played.
     fn leave_play(&mut self, state: State) {
         self.state = state;
-        if let Some(swap) = self.tables.swap() {
-            self.tables.activate_staging(swap.facts);
-            self.persist.table_changed();
+        match self.tables.swap() {
+            None => {}
+            Some(Swap {
+                facts,
+                way: SwapWay::Ramp { .. },
+            }) => {
+                self.tables.activate_staging(facts);
+                self.persist.table_changed();
+            }
+            Some(Swap {
+                way: SwapWay::Follow(_),
+                ..
+            }) => self.tables.abandon(),
         }
     }
 

@@ -127,7 +127,7 @@ mod tests {
     }
 
     fn telemetry(outbox: &mut Outbox) {
-        outbox.send(header(), Kind::KeepAlive, &[], None, What::Telemetry);
+        outbox.send(header(), Kind::Pong, &[], None, What::Telemetry);
     }
 
     /// Takes all that waits; how many bytes it was.

@@ -1,7 +1,8 @@
-//! Storing what is not stored yet, in bounded steps, while the robot is stopped: erase, pages, header (see
-//! [`crate::storage`] for why a power cut at any byte leaves the old table or the new one).
+//! Storing of changed tables and settings, in bounded steps, while the robot is stopped: erase, pages, header (see
+//! [`crate::storage`] for why a power cut at any byte leaves the old table or the new one). Content that is stored already is
+//! not written, and a budget limits the rate of writes: flash bears about 100 000 erasures.
 
-use crate::storage::{PAGE, SLOTS, Storage};
+use crate::storage::{MAX_SETTINGS, PAGE, SLOTS, Storage};
 use crate::{GaitTable, ShortStarts};
 use link_protocol::{MAX_TABLE, crc32c};
 
@@ -11,7 +12,12 @@ const HEADER: usize = 24;
 /// After a failure the storage is left alone for so long.
 const RETRY_US: u64 = 1_000_000;
 
-/// What is stored, and how far the rest is.
+/// Writes that may follow each other at once; see [`WRITE_EVERY_US`].
+const WRITES_AT_ONCE: u64 = 32;
+/// After those, one write in this time.
+const WRITE_EVERY_US: u64 = 120_000_000;
+
+/// Progress of storing.
 #[derive(Clone)]
 pub(crate) struct Persist {
     /// Slot and generation of the newest whole table.
@@ -25,6 +31,45 @@ pub(crate) struct Persist {
     failed_us: Option<u64>,
     /// What was stored could not be read, and nothing was stored since.
     lost: bool,
+    budget: WearBudget,
+}
+
+/// Token bucket of writes.
+#[derive(Clone, Copy, Debug)]
+struct WearBudget {
+    /// Writes left at `since_us`.
+    left: u64,
+    since_us: u64,
+    /// Somebody at the robot has changed something: the next write is free.
+    granted: bool,
+}
+
+impl WearBudget {
+    const fn full() -> Self {
+        Self {
+            left: WRITES_AT_ONCE,
+            since_us: 0,
+            granted: false,
+        }
+    }
+
+    fn allows(&self, now_us: u64) -> bool {
+        self.granted || self.left > 0 || now_us.saturating_sub(self.since_us) >= WRITE_EVERY_US
+    }
+
+    fn spend(&mut self, now_us: u64) {
+        if core::mem::take(&mut self.granted) {
+            return;
+        }
+        let earned = now_us.saturating_sub(self.since_us) / WRITE_EVERY_US;
+        self.left = self.left.saturating_add(earned).min(WRITES_AT_ONCE);
+        self.since_us = if self.left == WRITES_AT_ONCE {
+            now_us
+        } else {
+            self.since_us.saturating_add(earned * WRITE_EVERY_US)
+        };
+        self.left = self.left.saturating_sub(1);
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,7 +90,13 @@ impl Persist {
             settings_failed: false,
             failed_us: None,
             lost: false,
+            budget: WearBudget::full(),
         }
+    }
+
+    /// Somebody at the robot has changed something: it is stored whatever the budget.
+    pub(crate) fn grant(&mut self) {
+        self.budget.granted = true;
     }
 
     /// The active table is another one now.
@@ -74,9 +125,11 @@ impl Persist {
         !self.unsaved() && self.starts_unsaved.is_none()
     }
 
-    /// There is something to store, and no failure just now.
+    /// There is something to store, the budget allows it, and no failure just now.
     pub(crate) fn wanted(&self, now_us: u64) -> bool {
+        let costs = self.settings_unsaved || self.step == Step::Erase;
         !self.all_stored()
+            && (!costs || self.budget.allows(now_us))
             && self
                 .failed_us
                 .is_none_or(|failed| now_us.saturating_sub(failed) >= RETRY_US)
@@ -124,7 +177,7 @@ impl Persist {
         settings: &[u8],
     ) -> Result<(), S::Error> {
         let was_unsaved = self.unsaved();
-        let result = self.try_step(storage, table, settings);
+        let result = self.try_step(now_us, storage, table, settings);
         self.failed_us = if result.is_err() { Some(now_us) } else { None };
         // The record of starts says nothing of what was lost.
         self.lost &= result.is_err() || !was_unsaved;
@@ -137,13 +190,17 @@ impl Persist {
 
     fn try_step<S: Storage>(
         &mut self,
+        now_us: u64,
         storage: &mut S,
         table: Option<&GaitTable>,
         settings: &[u8],
     ) -> Result<(), S::Error> {
         if self.settings_unsaved && (self.table_stored() || !self.settings_failed) {
             self.settings_failed = true;
-            storage.save_settings(settings)?;
+            if !holds_settings(storage, settings) {
+                self.budget.spend(now_us);
+                storage.save_settings(settings)?;
+            }
             (self.settings_failed, self.settings_unsaved) = (false, false);
             return Ok(());
         }
@@ -162,7 +219,15 @@ impl Persist {
         });
         match self.step {
             Step::Idle => {}
+            Step::Erase
+                if self
+                    .newest
+                    .is_some_and(|(slot, _)| holds_table(storage, slot, table)) =>
+            {
+                self.step = Step::Idle;
+            }
             Step::Erase => {
+                self.budget.spend(now_us);
                 storage.erase(slot)?;
                 self.step = Step::Page(0);
             }
@@ -214,6 +279,30 @@ fn header(table: &GaitTable, generation: u32) -> [u8; HEADER] {
     bytes
 }
 
+/// The stored settings are these. A record that cannot be read is another one.
+fn holds_settings<S: Storage>(storage: &mut S, settings: &[u8]) -> bool {
+    let mut bytes = [0; MAX_SETTINGS];
+    let stored = storage.load_settings(&mut bytes);
+    matches!(stored, Ok(Some(len)) if bytes.get(..len) == Some(settings))
+}
+
+/// The slot holds this table.
+fn holds_table<S: Storage>(storage: &mut S, slot: usize, table: &GaitTable) -> bool {
+    let mut head = [0; HEADER];
+    let generation = 0..12;
+    if storage.read(slot, 0, &mut head).is_err()
+        || head[generation.end..HEADER - 4] != header(table, 0)[generation.end..HEADER - 4]
+    {
+        return false;
+    }
+    let mut pages = table.bytes().chunks(PAGE).enumerate();
+    pages.all(|(page, data)| {
+        let mut stored = [0; PAGE];
+        let stored = &mut stored[..data.len()];
+        storage.read(slot, PAGE * (1 + page), stored).is_ok() && stored == data
+    })
+}
+
 /// Reads a slot; its generation where it holds a whole table.
 fn read_slot<S: Storage>(
     storage: &mut S,
@@ -240,6 +329,130 @@ fn read_slot<S: Storage>(
 mod tests {
     use super::*;
     use crate::storage::MemoryStorage;
+
+    fn table(amplitude: f64) -> GaitTable {
+        let shape = |u: f64| [amplitude * u * (1.0 - u), 0.0];
+        GaitTable::from_fn(100, shape).unwrap_or_else(|_| GaitTable::empty())
+    }
+
+    /// Counts erasures, and writes of the settings.
+    struct Counted {
+        flash: MemoryStorage,
+        writes: u64,
+    }
+
+    impl Counted {
+        fn erased() -> Self {
+            Self {
+                flash: MemoryStorage::erased(),
+                writes: 0,
+            }
+        }
+
+        /// Stores all that may be stored now; returns the number of writes.
+        fn serve(
+            &mut self,
+            persist: &mut Persist,
+            now_us: u64,
+            table: &GaitTable,
+            settings: &[u8],
+        ) -> u64 {
+            let before = self.writes;
+            while persist.wanted(now_us) {
+                let Ok(()) = persist.step(now_us, self, Some(table), settings);
+            }
+            self.writes - before
+        }
+    }
+
+    impl Storage for Counted {
+        type Error = core::convert::Infallible;
+
+        fn read(
+            &mut self,
+            slot: usize,
+            offset: usize,
+            bytes: &mut [u8],
+        ) -> Result<(), Self::Error> {
+            self.flash.read(slot, offset, bytes)
+        }
+
+        fn erase(&mut self, slot: usize) -> Result<(), Self::Error> {
+            self.writes += 1;
+            self.flash.erase(slot)
+        }
+
+        fn program(
+            &mut self,
+            slot: usize,
+            page: usize,
+            bytes: &[u8; PAGE],
+        ) -> Result<(), Self::Error> {
+            self.flash.program(slot, page, bytes)
+        }
+
+        fn load_settings(
+            &mut self,
+            bytes: &mut [u8; MAX_SETTINGS],
+        ) -> Result<Option<usize>, Self::Error> {
+            self.flash.load_settings(bytes)
+        }
+
+        fn save_settings(&mut self, bytes: &[u8]) -> Result<(), Self::Error> {
+            self.writes += 1;
+            self.flash.save_settings(bytes)
+        }
+
+        fn load_starts(&mut self, bytes: &mut [u8; ShortStarts::LEN]) -> Result<bool, Self::Error> {
+            self.flash.load_starts(bytes)
+        }
+
+        fn save_starts(&mut self, bytes: &[u8; ShortStarts::LEN]) -> Result<(), Self::Error> {
+            self.flash.save_starts(bytes)
+        }
+    }
+
+    /// Begin and Commit of the stored table, and the settings in force, seven times a second for an hour.
+    #[test]
+    fn equal_content_is_not_written() {
+        let (mut flash, mut persist) = (Counted::erased(), Persist::new());
+        let table = table(1.0);
+        persist.table_changed();
+        persist.settings_changed();
+        assert_eq!(flash.serve(&mut persist, 0, &table, &[7]), 2);
+        for again in 1..7 * 3600_u64 {
+            persist.table_changed();
+            persist.settings_changed();
+            let writes = flash.serve(&mut persist, again * 142_857, &table, &[7]);
+            assert_eq!((writes, persist.all_stored()), (0, true));
+        }
+        // Another table of the same length is another one.
+        persist.table_changed();
+        let other = self::table(0.9);
+        assert_eq!(flash.serve(&mut persist, 3_600_000_000, &other, &[7]), 1);
+    }
+
+    /// The same with content that changes each time: the budget of `docs/reference/promises.md`.
+    #[test]
+    fn changes_are_written_at_the_rate_of_the_budget() {
+        let (mut flash, mut persist) = (Counted::erased(), Persist::new());
+        let table = GaitTable::empty();
+        let (mut writes, day_us) = (0, 86_400_000_000_u64);
+        for second in 0..86_400_u64 {
+            persist.settings_changed();
+            let settings = second.to_le_bytes();
+            writes += flash.serve(&mut persist, second * 1_000_000, &table, &settings);
+        }
+        assert_eq!(writes, WRITES_AT_ONCE + day_us / WRITE_EVERY_US - 1);
+        // Somebody at the robot is not kept waiting.
+        persist.settings_changed();
+        assert_eq!(flash.serve(&mut persist, day_us, &table, &[1]), 1);
+        persist.settings_changed();
+        assert_eq!(flash.serve(&mut persist, day_us, &table, &[2]), 0);
+        persist.grant();
+        assert_eq!(flash.serve(&mut persist, day_us, &table, &[2]), 1);
+        assert_eq!(flash.flash.settings.as_deref(), Some(&[2][..]));
+    }
 
     #[test]
     fn what_was_lost_is_told_until_it_is_stored_anew() {

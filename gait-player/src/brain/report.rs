@@ -5,8 +5,8 @@ use super::state::State;
 use super::{Brain, Transport};
 use crate::TICK_US;
 use link_protocol::{
-    ANGLE_UNIT_RAD, Counters, DecodeCounters, Flags, Header, HelloReply, MAX_KNOTS, Message,
-    PROTOCOL_CURRENT, PROTOCOL_MIN, RobotLimits, SCHEMA_KEY, StateName, Status, TableInfo,
+    ANGLE_UNIT_RAD, Checked, Counters, DecodeCounters, Flags, Header, HelloReply, MAX_KNOTS,
+    Message, PROTOCOL_CURRENT, PROTOCOL_MIN, RobotLimits, SCHEMA_KEY, StateName, Status, TableInfo,
     Telemetry,
 };
 
@@ -57,7 +57,22 @@ impl Brain {
             battery_mv: self.battery.mv(),
             table: self.table_info(),
             upload: self.tables.uploaded(),
+            settings_crc32: self.settings_crc32(),
+            estops: self.estops,
         }
+    }
+
+    /// Table and settings as a play must name them; without a table its checksum is 0.
+    pub fn held(&self) -> Checked {
+        Checked {
+            table_crc32: self.tables.active_crc32().unwrap_or_default(),
+            settings_crc32: self.settings_crc32(),
+        }
+    }
+
+    /// E-stops since the start.
+    pub fn estops(&self) -> u32 {
+        self.estops
     }
 
     pub(super) fn table_info(&self) -> Option<TableInfo> {
@@ -147,11 +162,7 @@ impl Brain {
             frames_ok: frames.ok as u16,
             frames_bad: frames.bad() as u16,
         };
-        let header = Header {
-            version: self.session.version(),
-            session: self.session.number(),
-            sequence: self.telemetry_sequence,
-        };
+        let header = Header::new(self.session.number(), self.telemetry_sequence);
         self.telemetry_sequence = self.telemetry_sequence.wrapping_add(1);
         let telemetry = Message::Telemetry(telemetry);
         self.send(transport, header, &telemetry, true, What::Telemetry);

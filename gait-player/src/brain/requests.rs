@@ -1,13 +1,12 @@
-//! What a frame from the link does: who may ask, in which order, and what is answered. What a request means is in
-//! [`super::actions`].
+//! Frames from the link: authority, order and replies. The effect of each request is in [`super::actions`].
 
 use super::config::Transport;
 use super::outbox::What;
 use super::session::{Admission, Order};
 use super::{Brain, count};
 use link_protocol::{
-    BodyError, Header, Hello, Kind, MAX_BODY, Message, POWER_SINCE, PROTOCOL_CURRENT, PROTOCOL_MIN,
-    Ping, Pong, Received, Refusal, Reply, Request, StopCause,
+    BodyError, Header, Hello, Kind, MAX_BODY, Message, Needs, PROTOCOL_CURRENT, PROTOCOL_MIN, Pong,
+    PulseRange, Received, Refusal, Reply, Request, SettingsHeld, StopCause, settings_crc32,
 };
 
 /// What a frame asks to be answered to: its header, its way, and whether it is of the open session.
@@ -35,14 +34,6 @@ impl Brain {
         match received.message {
             Ok(Message::Hello(hello)) => self.greet(asked, &hello),
             Ok(Message::Request(request)) => self.request(now_us, asked, &request, admission),
-            Ok(Message::KeepAlive) => {
-                self.count_stale(asked);
-            }
-            Ok(Message::Ping(Ping { host_us })) => {
-                if self.count_stale(asked) {
-                    self.pong(now_us, asked, host_us);
-                }
-            }
             Ok(Message::Heartbeat(heartbeat)) => {
                 if self.count_stale(asked) {
                     self.session.feed(now_us, heartbeat);
@@ -84,7 +75,6 @@ impl Brain {
         let session = if understood {
             self.session.greet(
                 asked.transport,
-                hello.protocol_current.min(PROTOCOL_CURRENT),
                 hello.host_nonce,
                 self.settings.key.as_ref(),
             )
@@ -118,7 +108,13 @@ impl Brain {
     }
 
     fn request(&mut self, now_us: u64, asked: Asked, request: &Request, admission: Admission) {
-        // These act whatever else holds. Where their number is the next one, it takes its place in the order.
+        let needs = request
+            .class(|| self.settings_held().is_widened_by(request))
+            .needs();
+        if needs.signature && !self.count_stale(asked) {
+            return self.turn_away(asked, request, admission);
+        }
+        // These act whatever else holds. If their number is the next one, it takes its place in the order.
         if request.is_stop() {
             if *request == Request::Stop {
                 self.stop(StopCause::Requested);
@@ -133,12 +129,12 @@ impl Brain {
             // Answered to whoever sent it; only ours has a place in the order, where its answer is kept.
             return self.answer(asked, Reply::Done, What::StopAnswer);
         }
-        if !self.count_stale(asked) {
-            return self.turn_away(asked, admission);
-        }
         if let Request::Chunk(chunk) = request {
             // Acts by its offset, whatever the order, and keeps no reply.
-            return match self.tables.chunk(chunk) {
+            let taken = self
+                .authorize(now_us, asked, needs)
+                .and_then(|()| self.tables.chunk(chunk));
+            return match taken {
                 Ok(offset) => self.reply(
                     asked,
                     Reply::Wanted {
@@ -161,33 +157,69 @@ impl Brain {
             }
         }
         let outcome = self
-            .may_power(now_us, asked, request)
+            .authorize(now_us, asked, needs)
             .and_then(|()| self.act(now_us, asked, request));
         match outcome {
             Ok(Some(reply)) => {
                 count(&mut self.counted.acted);
                 self.finish(asked, reply);
+                if matches!(request, Request::SetKey(_)) {
+                    self.session.close();
+                } else if needs.wear && self.is_present(now_us, asked) {
+                    self.settings.note_bench(request);
+                    self.persist.grant();
+                }
             }
             Ok(None) => count(&mut self.counted.acted),
             Err(refusal) => self.finish(asked, Reply::Refused(refusal)),
         }
     }
 
-    /// What sets servos in motion takes a host that is there now: what a buffer kept of one that is gone does nothing.
-    fn may_power(&self, now_us: u64, asked: Asked, request: &Request) -> Result<(), Refusal> {
-        if !request.is_powering() {
-            return Ok(());
+    /// Enforces what the authority table demands of a request of the open session, before it is looked at further. The
+    /// wear budget is enforced where the flash is written ([`super::persist`]).
+    fn authorize(&self, now_us: u64, asked: Asked, needs: Needs) -> Result<(), Refusal> {
+        let state = self.state.name();
+        if !needs.state.includes(state) {
+            return Err(Refusal::WrongState(state));
         }
-        if asked.header.version < POWER_SINCE {
-            return Err(Refusal::Version {
-                min: POWER_SINCE,
-                current: PROTOCOL_CURRENT,
-            });
-        }
-        if !self.session.attended(now_us) {
+        // Bytes that a buffer kept of a host that is gone do nothing.
+        if needs.freshness && !self.session.attended(now_us) {
             return Err(Refusal::NotFresh);
         }
+        if needs.presence && !self.is_present(now_us, asked) {
+            return Err(Refusal::NeedsPresence);
+        }
         Ok(())
+    }
+
+    /// Somebody is at the robot: at the other end of its cable, or within the bench window.
+    fn is_present(&self, now_us: u64, asked: Asked) -> bool {
+        asked.transport == Transport::Usb || self.bench.open(now_us)
+    }
+
+    /// The settings with which a new one is compared.
+    pub(super) fn settings_held(&self) -> SettingsHeld {
+        SettingsHeld {
+            configuration: self.settings.configuration,
+            built: self.built,
+            servos: self.settings.servos,
+            at_bench: self.settings.at_bench,
+            ranges: self.ranges(),
+            has_key: self.settings.key.is_some(),
+        }
+    }
+
+    /// Hash of the settings that a play is checked for.
+    pub(super) fn settings_crc32(&self) -> u32 {
+        settings_crc32(
+            &self.settings.configuration,
+            &self.settings.servos,
+            &self.ranges(),
+        )
+    }
+
+    fn ranges(&self) -> [PulseRange; 2] {
+        [0, 1].map(|joint| self.settings.window(joint, &self.firmware_limits))
     }
 
     /// The stored reply to a repeat.
@@ -207,18 +239,26 @@ impl Brain {
         }
     }
 
-    /// Says why a request may not act.
-    fn turn_away(&mut self, asked: Asked, admission: Admission) {
+    /// Refuses a request that is not of the open session. No reply tells the number of that one.
+    fn turn_away(&mut self, asked: Asked, request: &Request, admission: Admission) {
         let refusal = match admission {
-            // What came twice was answered once: a second answer would only undo it.
+            // A frame that came twice was answered once: a second answer would only undo it.
             Admission::Ours | Admission::Replayed => return,
-            Admission::Foreign => Refusal::StaleSession {
-                open: self.session.number(),
-            },
+            // The request that closed the session, again: its reply was lost.
+            Admission::Closed if self.closed_by(asked, request) => {
+                count(&mut self.counted.replayed);
+                return self.reply_again(asked);
+            }
+            Admission::Foreign | Admission::Closed => Refusal::StaleSession,
             Admission::Unsigned => Refusal::KeyNeeded,
             Admission::WrongKey => Refusal::WrongKey,
         };
         self.refuse(asked, refusal);
+    }
+
+    fn closed_by(&self, asked: Asked, request: &Request) -> bool {
+        matches!(request, Request::SetKey(key) if *key == self.settings.key)
+            && self.session.is_last(asked.header.sequence)
     }
 
     /// The answer to a request, kept for its repeats.

@@ -1,10 +1,8 @@
-//! Who may ask, and in which order: one session at a time, each request at most once.
+//! The session: one at a time, each request at most once, in order.
 
 use super::Transport;
 use heapless::Vec;
-use link_protocol::{
-    Binding, Header, Heartbeat, Key, Kind, MAX_BODY, PROTOCOL_CURRENT, Reply, Seal, Signature,
-};
+use link_protocol::{Binding, Header, Heartbeat, Key, Kind, MAX_BODY, Reply, Seal, Signature};
 
 /// A link is silent when no fresh keep-alive of its session came for this long. With the tick that finds out, the ramp
 /// starts 480 ms after the last one: 500 ms are promised.
@@ -30,8 +28,6 @@ struct Open {
     number: u16,
     /// Of the greeting: what comes otherwise is not of this session.
     transport: Transport,
-    /// The protocol's, as both ends speak it.
-    version: u8,
     host_nonce: u32,
     /// The latest time of the robot's clock that the host has heard, by its keep-alives, µs.
     echoed_us: u64,
@@ -39,6 +35,8 @@ struct Open {
     /// Body of the reply to `last`; empty while there is none yet.
     reply: Vec<u8, MAX_BODY>,
     guard: Option<Guard>,
+    /// A key was set in it: it does nothing more than repeat the reply to that.
+    closed: bool,
 }
 
 /// Lets in only what was signed with the key for this session, each frame once and none after a later one.
@@ -51,13 +49,15 @@ struct Guard {
     signed: u64,
 }
 
-/// What a frame may do.
+/// Standing of a frame with the open session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Admission {
     /// Of the open session and, where there is a key, signed with it.
     Ours,
     /// Of no open session, or by another way than its greeting.
     Foreign,
+    /// Of the session that the setting of a key closed; signed as that session requires.
+    Closed,
     /// Of the open session, but not signed although there is a key.
     Unsigned,
     /// Signed with another key, or for another session of the same number.
@@ -92,9 +92,28 @@ impl Session {
         }
     }
 
-    /// Number of the open session; 0 where none is.
+    /// Number of the open session; 0 if there is none.
     pub(crate) fn number(&self) -> u16 {
-        self.open.as_ref().map_or(0, |open| open.number)
+        self.open().map_or(0, |open| open.number)
+    }
+
+    fn open(&self) -> Option<&Open> {
+        self.open.as_ref().filter(|open| !open.closed)
+    }
+
+    /// Closes the session: a key holds from here on. The reply to the request that set it can still be repeated.
+    pub(crate) fn close(&mut self) {
+        if let Some(open) = &mut self.open {
+            open.closed = true;
+        }
+        self.fed_us = None;
+    }
+
+    /// The request of this number is the last one that acted.
+    pub(crate) fn is_last(&self, sequence: u16) -> bool {
+        self.open
+            .as_ref()
+            .is_some_and(|open| open.last == Some(sequence))
     }
 
     /// What a host is told to know this start by. It changes too when the numbers of sessions begin anew, so that no two
@@ -105,25 +124,17 @@ impl Session {
 
     /// Transport of the open session.
     pub(crate) fn transport(&self) -> Option<Transport> {
-        self.open.as_ref().map(|open| open.transport)
-    }
-
-    /// The protocol's version in the open session.
-    pub(crate) fn version(&self) -> u8 {
-        self.open
-            .as_ref()
-            .map_or(PROTOCOL_CURRENT, |open| open.version)
+        self.open().map(|open| open.transport)
     }
 
     /// Opens a session for a greeting, or finds it open already. The key stands for as long as the session.
     pub(crate) fn greet(
         &mut self,
         transport: Transport,
-        version: u8,
         host_nonce: u32,
         key: Option<&Key>,
     ) -> u16 {
-        if let Some(open) = &self.open
+        if let Some(open) = self.open()
             && (open.transport, open.host_nonce) == (transport, host_nonce)
         {
             return open.number;
@@ -145,7 +156,6 @@ impl Session {
         self.open = Some(Open {
             number,
             transport,
-            version,
             host_nonce,
             echoed_us: 0,
             last: None,
@@ -155,6 +165,7 @@ impl Session {
                 last: 0,
                 signed: 0,
             }),
+            closed: false,
         });
         number
     }
@@ -171,8 +182,13 @@ impl Session {
         let Some(open) = self.open.as_mut().filter(ours) else {
             return Admission::Foreign;
         };
+        let admitted = if open.closed {
+            Admission::Closed
+        } else {
+            Admission::Ours
+        };
         match (&mut open.guard, signature) {
-            (None, _) => Admission::Ours,
+            (None, _) => admitted,
             (Some(_), None) => Admission::Unsigned,
             (Some(guard), Some(signature)) => {
                 if !guard.seal.verifies(signed, signature) {
@@ -181,18 +197,17 @@ impl Session {
                     Admission::Replayed
                 } else {
                     guard.last = signature.counter;
-                    Admission::Ours
+                    admitted
                 }
             }
         }
     }
 
-    /// The signature of a frame to the host of the open session; `None` where there is no key, or where the host is of a
-    /// version that does not ask for it.
+    /// The signature of a frame to the host of the open session; `None` if it has no key.
     pub(crate) fn sign(&mut self, header: Header, kind: Kind, body: &[u8]) -> Option<Signature> {
         let open = self.open.as_mut()?;
         let guard = open.guard.as_mut()?;
-        if header.session != open.number || open.version < 2 {
+        if header.session != open.number {
             return None;
         }
         guard.signed += 1;
@@ -202,7 +217,9 @@ impl Session {
     /// A keep-alive of the open session: it feeds the lease where it is fresh. The time it echoes must be later than any
     /// before, so that none counts twice, and may not lie ahead.
     pub(crate) fn feed(&mut self, now_us: u64, heartbeat: Heartbeat) {
-        let Some(open) = &mut self.open else { return };
+        let Some(open) = self.open.as_mut().filter(|open| !open.closed) else {
+            return;
+        };
         let age_us = now_us.checked_sub(heartbeat.heard_us);
         if heartbeat.heard_us > open.echoed_us && age_us.is_some_and(|age| age <= FRESH_US) {
             open.echoed_us = heartbeat.heard_us;
@@ -218,7 +235,7 @@ impl Session {
 
     /// The host of the open session is there: what fed the lease within it came from this host, not from one before.
     pub(crate) fn attended(&self, now_us: u64) -> bool {
-        self.open.as_ref().is_some_and(|open| open.echoed_us > 0) && !self.silent(now_us)
+        self.open().is_some_and(|open| open.echoed_us > 0) && !self.silent(now_us)
     }
 
     /// Where this number stands; [`Order::Next`] makes it the last one, without a reply yet.
@@ -267,21 +284,21 @@ mod tests {
         assert_eq!(session.number(), 0);
         assert_eq!(
             [
-                session.greet(Transport::Uart, 2, 1, None),
-                session.greet(Transport::Uart, 2, 1, None),
-                session.greet(Transport::Uart, 2, 2, None),
-                session.greet(Transport::Uart, 2, 3, None)
+                session.greet(Transport::Uart, 1, None),
+                session.greet(Transport::Uart, 1, None),
+                session.greet(Transport::Uart, 2, None),
+                session.greet(Transport::Uart, 3, None)
             ],
             [0xFFFE, 0xFFFE, 0xFFFF, 1]
         );
         assert_eq!(session.number(), 1);
-        assert_eq!(Session::new(0, 7).greet(Transport::Uart, 2, 9, None), 1);
+        assert_eq!(Session::new(0, 7).greet(Transport::Uart, 9, None), 1);
     }
 
     #[test]
     fn numbers_count_modulo_two_to_the_sixteenth() {
         let mut session = Session::new(5, 7);
-        session.greet(Transport::Uart, 2, 1, None);
+        session.greet(Transport::Uart, 1, None);
         assert_eq!(session.order(0xFFFE), Order::Next);
         assert_eq!(session.order(0xFFFE), Order::Repeat);
         assert_eq!(session.order(0x0001), Order::Next);
@@ -294,7 +311,7 @@ mod tests {
     #[test]
     fn replies_are_kept_for_the_last_request_only() {
         let mut session = Session::new(5, 7);
-        session.greet(Transport::Uart, 2, 1, None);
+        session.greet(Transport::Uart, 1, None);
         session.order(1);
         assert_eq!(session.kept(), None);
         session.order(2);
@@ -302,7 +319,7 @@ mod tests {
         assert_eq!(session.kept(), None);
         session.keep(2, &Reply::Done);
         assert_eq!(session.kept(), Some(&[0][..]));
-        session.greet(Transport::Uart, 2, 2, None);
+        session.greet(Transport::Uart, 2, None);
         assert_eq!(session.kept(), None);
     }
 
@@ -314,7 +331,7 @@ mod tests {
             session.admit(Transport::Uart, 0, &[], None),
             Admission::Foreign
         );
-        session.greet(Transport::Uart, 2, 1, None);
+        session.greet(Transport::Uart, 1, None);
         assert_eq!(
             session.admit(Transport::Uart, 0, &[], None),
             Admission::Foreign
@@ -334,9 +351,32 @@ mod tests {
     }
 
     #[test]
+    fn a_closed_session_only_repeats_its_last_reply() {
+        let mut session = Session::new(5, 7);
+        session.greet(Transport::Uart, 1, None);
+        session.order(9);
+        session.keep(9, &Reply::Done);
+        session.feed(
+            10,
+            Heartbeat {
+                host_us: 0,
+                heard_us: 5,
+            },
+        );
+        session.close();
+        assert!(session.number() == 0 && session.transport().is_none());
+        assert!(session.silent(10) && !session.attended(10));
+        let admission = session.admit(Transport::Uart, 5, &[], None);
+        assert_eq!(admission, Admission::Closed);
+        assert!(session.is_last(9) && !session.is_last(10) && session.kept().is_some());
+        // The same greeting opens a session of its own now.
+        assert_eq!(session.greet(Transport::Uart, 1, None), 6);
+    }
+
+    #[test]
     fn only_what_is_fresh_and_new_feeds_the_lease() {
         let mut session = Session::new(5, 7);
-        session.greet(Transport::Uart, 2, 1, None);
+        session.greet(Transport::Uart, 1, None);
         let beat = |heard_us| Heartbeat {
             host_us: 0,
             heard_us,
@@ -360,7 +400,7 @@ mod tests {
     #[test]
     fn a_host_is_there_by_its_own_keep_alives() {
         let mut session = Session::new(5, 7);
-        session.greet(Transport::Uart, 2, 1, None);
+        session.greet(Transport::Uart, 1, None);
         let beat = |heard_us| Heartbeat {
             host_us: 0,
             heard_us,
@@ -369,7 +409,7 @@ mod tests {
         session.feed(10, beat(5));
         assert!(session.attended(10 + LEASE_US) && !session.attended(11 + LEASE_US));
         // Another host: the motion's lease runs on, and still it says for itself that it is there.
-        session.greet(Transport::Usb, 2, 2, None);
+        session.greet(Transport::Usb, 2, None);
         assert!(!session.silent(11) && !session.attended(11));
         session.feed(11, beat(9));
         assert!(session.attended(11));
@@ -379,7 +419,7 @@ mod tests {
     fn a_key_lets_in_what_it_signed_for_this_session_once_and_in_order() {
         let key = Key([3; Key::LEN]);
         let mut session = Session::new(5, 7);
-        session.greet(Transport::Uart, 2, 1, Some(&key));
+        session.greet(Transport::Uart, 1, Some(&key));
         let seal = |session, host_nonce| {
             let binding = Binding {
                 boot_nonce: 7,
@@ -390,9 +430,9 @@ mod tests {
         };
         let header = link_protocol::Header::new(5, 0);
         let mut come = |seal: &Seal, counter| {
-            let kind = link_protocol::Kind::KeepAlive;
+            let kind = link_protocol::Kind::Pong;
             let signature = seal.sign(header, kind, &[], counter);
-            let mut signed = std::vec![2, 5, 0, 0, 0, 0x86];
+            let mut signed = std::vec![0x10, 5, 0, 0, 0, 0x87];
             signed.extend(&counter.to_le_bytes()[..6]);
             session.admit(Transport::Uart, 5, &signed, Some(&signature))
         };
@@ -418,10 +458,10 @@ mod tests {
         let mut session = Session::new(0xFFF0, 7);
         let mut seen = std::collections::HashSet::new();
         for nonce in 0..200_000 {
-            let number = session.greet(Transport::Uart, 2, nonce, None);
+            let number = session.greet(Transport::Uart, nonce, None);
             assert!(seen.insert((session.boot_nonce(), number)));
             // The same greeting again is told the same.
-            assert_eq!(session.greet(Transport::Uart, 2, nonce, None), number);
+            assert_eq!(session.greet(Transport::Uart, nonce, None), number);
             assert!(seen.contains(&(session.boot_nonce(), number)));
         }
     }

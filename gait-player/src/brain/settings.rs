@@ -1,9 +1,11 @@
-//! What an operator set and a power cut must not take: configuration and servo maps. Every value is checked where it
-//! enters, from the wire as from storage: neither may put a number into the brain that it cannot live with.
+//! Settings that outlive a power cut: configuration, servo maps, pulse ranges and key. Every value is checked where it
+//! enters, from the wire as from storage.
 
 use crate::storage::MAX_SETTINGS;
 use crate::{Limits, servo::ServoMap};
-use link_protocol::{Configuration, Key, PulseRange, Refusal, ServoSettings, TangentialDrag};
+use link_protocol::{
+    Configuration, Key, PulseRange, Refusal, Request, ServoSettings, TangentialDrag,
+};
 use serde::{Deserialize, Serialize};
 use swimmer_model::{Links, Model, Swimmer};
 
@@ -11,110 +13,51 @@ use swimmer_model::{Links, Model, Swimmer};
 const MAX_TRIM: i16 = 5_000;
 /// Longest way to neutral, ms.
 const MAX_TO_NEUTRAL_MS: f32 = 1_000.0;
-/// Share by which a length may differ from that as built without anybody at the robot.
-const LENGTH_ROOM: f32 = 0.1;
 /// Smallest angle that a servo's end stops must leave to both sides, rad.
 const MIN_REACH: f32 = 1e-2;
 
-/// What is stored.
+/// The stored record.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Settings {
     pub(crate) configuration: Configuration,
     pub(crate) servos: [ServoSettings; 2],
-    /// Behind the rest of the record, and only where there is one, as the key after it: records without are from before.
-    #[serde(skip)]
+    /// The maps as they were last set with presence, or as built.
+    pub(crate) at_bench: [ServoSettings; 2],
+    /// `None`: the firmware's window.
     pub(crate) ranges: [Option<PulseRange>; 2],
-    #[serde(skip)]
     pub(crate) key: Option<Key>,
-}
-
-/// What stands behind the record, told apart by its length: nothing, a key, or ranges with or without a key.
-struct Behind {
-    ranges: [Option<PulseRange>; 2],
-    key: Option<Key>,
-}
-
-impl Behind {
-    const RANGE: usize = 8;
-    const RANGES: usize = 2 * Self::RANGE;
-    /// Tells ranges from a key, which has as many bytes.
-    const TAG: u8 = b'R';
-
-    fn read(bytes: &[u8]) -> Option<Self> {
-        let (ranges, key) = match bytes.split_first() {
-            Some((&Self::TAG, rest)) if bytes.len() != Key::LEN => {
-                let (ranges, key) = rest.split_first_chunk::<{ Self::RANGES }>()?;
-                (Some(ranges), key)
-            }
-            _ => (None, bytes),
-        };
-        let key = match key {
-            [] => None,
-            key => Some(Key(key.try_into().ok()?)),
-        };
-        let range = |joint: usize| {
-            let ranges = ranges?;
-            let word = |at: usize| {
-                let at = joint * Self::RANGE + at;
-                u32::from_le_bytes(core::array::from_fn(|i| ranges[at + i]))
-            };
-            let range = PulseRange {
-                shortest_ns: word(0),
-                longest_ns: word(4),
-            };
-            (range.longest_ns > 0).then_some(range)
-        };
-        Some(Self {
-            ranges: [range(0), range(1)],
-            key,
-        })
-    }
 }
 
 impl Settings {
     /// The record for storage.
     pub(crate) fn encode<'a>(&self, bytes: &'a mut [u8; MAX_SETTINGS]) -> Option<&'a mut [u8]> {
-        let mut len = postcard::to_slice(self, bytes).ok()?.len();
-        let mut put = |part: &[u8]| {
-            let place = bytes.get_mut(len..len + part.len())?;
-            place.copy_from_slice(part);
-            len += part.len();
-            Some(())
-        };
-        if self.ranges.iter().any(Option::is_some) {
-            put(&[Behind::TAG])?;
-            for range in self.ranges {
-                let (shortest, longest) =
-                    range.map_or((0, 0), |range| (range.shortest_ns, range.longest_ns));
-                put(&shortest.to_le_bytes())?;
-                put(&longest.to_le_bytes())?;
-            }
-        }
-        if let Some(key) = &self.key {
-            put(&key.0)?;
-        }
-        bytes.get_mut(..len)
+        postcard::to_slice(self, bytes).ok()
     }
 
     /// The key of a record, whatever else it holds: limits that have changed must not open the robot.
     pub(crate) fn stored_key(bytes: &[u8]) -> Option<Key> {
-        let (_, behind) = postcard::take_from_bytes::<Self>(bytes).ok()?;
-        Behind::read(behind)?.key
+        postcard::from_bytes::<Self>(bytes).ok()?.key
     }
 
-    /// Reads a record; `None` where it is none that these limits allow.
+    /// Reads a record; `None` if it is invalid under these limits.
     pub(crate) fn decode(bytes: &[u8], limits: &Limits) -> Option<Self> {
-        let (mut settings, behind) = postcard::take_from_bytes::<Self>(bytes).ok()?;
-        let Behind { ranges, key } = Behind::read(behind)?;
-        (settings.ranges, settings.key) = (ranges, key);
+        let (settings, rest) = postcard::take_from_bytes::<Self>(bytes).ok()?;
         check_configuration(&settings.configuration, limits).ok()?;
         settings
             .servos
             .iter()
+            .chain(&settings.at_bench)
             .try_for_each(|servo| check_servo(servo, limits))
             .ok()?;
         settings.reach(limits).ok()?;
-        Some(settings)
+        rest.is_empty().then_some(settings)
+    }
+
+    /// A request acted while somebody was at the robot: its servo map is the one that later ones are measured from.
+    pub(crate) fn note_bench(&mut self, request: &Request) {
+        if let Request::SetServo { joint, .. } | Request::Trim { joint, .. } = request {
+            self.at_bench[joint.index()] = self.servos[joint.index()];
+        }
     }
 
     /// The window of a servo's pulses, ns.
@@ -158,25 +101,6 @@ impl Settings {
     pub(crate) fn maps(&self) -> [ServoMap; 2] {
         self.servos.map(ServoMap::from)
     }
-}
-
-/// Whether somebody must be at the robot for this: lengths more than a tenth from those as built, or limits beyond those as
-/// built. What holds already is no change.
-pub(crate) fn needs_presence(
-    wanted: &Configuration,
-    held: &Configuration,
-    built: &Configuration,
-) -> bool {
-    let lengths = |of: &Configuration| [of.middle_m, of.front_m, of.back_m];
-    let same = |one: f32, other: f32| one.to_bits() == other.to_bits();
-    let far = (0..3).any(|link| {
-        let [wanted, held, built] = [wanted, held, built].map(|of| lengths(of)[link]);
-        let near = ((1.0 - LENGTH_ROOM) * built..=(1.0 + LENGTH_ROOM) * built).contains(&wanted);
-        !(near || same(wanted, held))
-    });
-    let beyond = |wanted: f32, held: f32, built: f32| wanted > built && !same(wanted, held);
-    far || beyond(wanted.max_angle, held.max_angle, built.max_angle)
-        || beyond(wanted.max_rate, held.max_rate, built.max_rate)
 }
 
 /// Checks a configuration and prepares its model.
@@ -265,6 +189,7 @@ mod tests {
         let settings = Settings {
             configuration: config.configuration,
             servos: config.servos,
+            at_bench: config.servos,
             ranges: [None; 2],
             key: None,
         };
@@ -272,23 +197,18 @@ mod tests {
     }
 
     proptest! {
-        /// Ranges and key stand behind the record, told apart by length and tag: a key may begin with that tag.
         #[test]
-        fn a_record_comes_back_with_its_ranges_and_its_key(
-            room in [proptest::option::of((1_000_u32..50_000, 1_000_u32..50_000)), proptest::option::of((1_000_u32..50_000, 1_000_u32..50_000))],
+        fn a_record_is_read_as_it_was_written(
+            widths in [proptest::option::of((1_000_u32..50_000, 1_000_u32..50_000)), proptest::option::of((1_000_u32..50_000, 1_000_u32..50_000))],
             key in proptest::option::of(any::<[u8; Key::LEN]>()),
-            tagged: bool,
+            trim in -MAX_TRIM..=MAX_TRIM,
         ) {
             let (mut settings, limits) = as_built();
-            settings.key = key.map(|mut key| {
-                if tagged {
-                    key[0] = Behind::TAG;
-                }
-                Key(key)
-            });
-            for (joint, room) in room.into_iter().enumerate() {
+            settings.key = key.map(Key);
+            settings.at_bench[1].trim = trim;
+            for (joint, width) in widths.into_iter().enumerate() {
                 let neutral_ns = settings.maps()[joint].pulse_ns(0.0);
-                settings.ranges[joint] = room.map(|(below, above)| PulseRange {
+                settings.ranges[joint] = width.map(|(below, above)| PulseRange {
                     shortest_ns: neutral_ns - below,
                     longest_ns: neutral_ns + above,
                 });
@@ -297,10 +217,34 @@ mod tests {
             let record = settings.encode(&mut bytes).unwrap();
             prop_assert_eq!(Settings::decode(record, &limits), Some(settings));
             prop_assert_eq!(Settings::stored_key(record), settings.key);
-            // One byte less or more is another record, or none: never the same with less in it.
+            // One byte less or more is no record.
             let len = record.len();
-            prop_assert_ne!(Settings::decode(&bytes[..len - 1], &limits), Some(settings));
+            prop_assert_eq!(Settings::decode(&bytes[..len - 1], &limits), None);
+            prop_assert_eq!(Settings::decode(&bytes[..=len], &limits), None);
         }
+    }
+
+    #[test]
+    fn the_longest_record_fits() {
+        let (mut settings, _) = as_built();
+        let servo = ServoSettings {
+            centre_ns: u32::MAX,
+            trim: i16::MIN,
+            ..settings.servos[0]
+        };
+        let range = PulseRange {
+            shortest_ns: u32::MAX,
+            longest_ns: u32::MAX,
+        };
+        settings.servos = [servo; 2];
+        settings.at_bench = [servo; 2];
+        settings.ranges = [Some(range); 2];
+        settings.key = Some(Key([0xFF; Key::LEN]));
+        let mut bytes = [0; MAX_SETTINGS];
+        assert_eq!(
+            settings.encode(&mut bytes).map(|record| record.len()),
+            Some(124)
+        );
     }
 
     #[test]

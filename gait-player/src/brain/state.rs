@@ -1,9 +1,9 @@
-//! What the brain is doing: one enum with data.
+//! State of the brain: one enum with data.
 
 use crate::ramp::Ramp;
 use link_protocol::{Play, StateName};
 
-/// What the brain is doing. Ticks are counted on the servo period's grid since the start.
+/// State of the brain. Ticks are counted on the servo period's grid since the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum State {
     /// Pulses off.
@@ -33,10 +33,10 @@ pub(crate) enum State {
     Settling { since: u64 },
 }
 
-/// How far a play has come.
+/// Progress of a play.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Progress {
-    /// What was asked for.
+    /// The request for it.
     pub(crate) request: Play,
     /// Time played, µs, without ramps and pauses; the sum of whole ticks, or of whole periods after a swap.
     pub(crate) elapsed_us: u64,
@@ -55,6 +55,12 @@ impl Progress {
     /// Time within the cycle, µs.
     pub(crate) fn in_cycle_us(&self) -> u32 {
         (self.elapsed_us % self.period_us()) as u32
+    }
+
+    /// Time until the last cycle is done, µs; 0 for a play without end.
+    pub(crate) fn left_us(&self) -> u64 {
+        let all_us = self.period_us() * u64::from(self.request.cycles);
+        all_us.saturating_sub(self.elapsed_us)
     }
 
     /// The last cycle is done.

@@ -79,6 +79,11 @@ impl Tables {
         self.active.as_ref().map(|active| &self.pair[active.index])
     }
 
+    /// CRC-32C of the active table.
+    pub(crate) fn active_crc32(&self) -> Option<u32> {
+        self.active.as_ref().map(|active| active.crc32)
+    }
+
     /// Facts of the active table; `None` until it is checked.
     pub(crate) fn facts(&self) -> Option<Facts> {
         self.active.as_ref().and_then(|active| active.facts)
@@ -239,8 +244,9 @@ impl Tables {
         Ok(())
     }
 
-    /// Drops the upload: what it holds is not what was announced.
+    /// Drops the upload, and the table that waits for the end of a cycle.
     pub(crate) fn abandon(&mut self) {
         self.upload = None;
+        self.swap = None;
     }
 }

@@ -135,6 +135,7 @@ impl Brain {
         let allowed = facts
             .allow(&self.limits)
             .and_then(|()| facts.allow_period(&self.limits, play.period_us))
+            .and_then(|()| self.check_held(play.checked, Some(self.tables.staging().crc32())))
             .and_then(|()| match (self.state.play(), self.tables.active()) {
                 (Some(_), Some(active)) => joins(active.knot(0), self.tables.staging().knot(0)),
                 _ => Err(Refusal::WrongState(self.state.name())),
@@ -190,9 +191,11 @@ impl Brain {
         facts: Facts,
         work: u32,
     ) {
+        // A trim may have come meanwhile.
         let allowed = facts
             .allow(&self.limits)
-            .and_then(|()| facts.allow_period(&self.limits, play.period_us));
+            .and_then(|()| facts.allow_period(&self.limits, play.period_us))
+            .and_then(|()| self.check_held(play.checked, self.tables.active_crc32()));
         if let Err(refusal) = allowed {
             return self.finish(reply_to, Reply::Refused(refusal));
         }

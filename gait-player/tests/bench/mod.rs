@@ -36,6 +36,8 @@ pub(crate) struct Bench {
     pub(crate) bytes_out: usize,
     /// The way on which this host speaks.
     pub(crate) via: Transport,
+    /// Checksum of the last table that was begun.
+    begun: u32,
     decoder: Decoder,
 }
 
@@ -56,10 +58,17 @@ pub(crate) fn play(cycles: u32, period_us: u32) -> Request {
         cycles,
         period_us,
         detached: false,
+        checked: AS_HELD,
     })
 }
 
-pub(crate) const ARM: Request = Request::Arm(Arm { clear_estop: false });
+/// Stands for table and settings as the robot holds them: [`Bench::ask`] fills them in.
+pub(crate) const AS_HELD: Checked = Checked {
+    table_crc32: 0,
+    settings_crc32: 0,
+};
+
+pub(crate) const ARM: Request = Request::Arm;
 
 impl Bench {
     /// A brain that was greeted.
@@ -95,6 +104,7 @@ impl Bench {
             others: Vec::new(),
             bytes_out: 0,
             via: Transport::Uart,
+            begun: 0,
             decoder: Decoder::new(),
         }
     }
@@ -202,6 +212,7 @@ impl Bench {
 
     /// Sends a request under a number; replies that came at once.
     pub(crate) fn send_request(&mut self, sequence: u16, request: Request) -> Option<Reply> {
+        let request = self.filled_in(request);
         let before = self.replies.len();
         self.send(
             Header::new(self.session, sequence),
@@ -213,11 +224,25 @@ impl Bench {
             .map(|(_, reply)| reply.clone())
     }
 
-    /// Asks, and waits for the answer.
+    pub(crate) fn filled_in(&self, mut request: Request) -> Request {
+        match &mut request {
+            Request::Play(play) if play.checked == AS_HELD => play.checked = self.brain.held(),
+            Request::Follow(follow) if follow.checked == AS_HELD => {
+                follow.checked = Checked {
+                    table_crc32: self.begun,
+                    ..self.brain.held()
+                };
+            }
+            _ => {}
+        }
+        request
+    }
+
+    /// Sends a request, and waits for the reply.
     pub(crate) fn ask(&mut self, request: Request) -> Reply {
         self.sequence = self.sequence.wrapping_add(1);
         let sequence = self.sequence;
-        if self.keep_alive && request.is_powering() {
+        if self.keep_alive && request.class(|| true).needs().freshness {
             self.beat();
         }
         if let Some(reply) = self.send_request(sequence, request) {
@@ -252,9 +277,16 @@ impl Bench {
         }
     }
 
+    /// Clears as many e-stops as there were.
+    pub(crate) fn clear_estop(&mut self) {
+        let count = self.status().estops;
+        self.done(Request::ClearEStop { count });
+    }
+
     /// Begin and chunks; the upload's number.
     pub(crate) fn send_table(&mut self, table: &GaitTable) -> u16 {
         let len = u16::try_from(table.bytes().len()).unwrap();
+        self.begun = table.crc32();
         let reply = self.ask(Request::Begin(Begin {
             slot: 0,
             len,

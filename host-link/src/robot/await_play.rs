@@ -58,7 +58,7 @@ impl Watch {
     }
 }
 
-/// The status that telemetry tells; period, table and upload are those of an earlier one.
+/// The status of a piece of telemetry, with what that does not hold from an earlier status.
 fn told_by(telemetry: &Telemetry, before: Option<&Status>) -> Status {
     Status {
         robot_us: telemetry.robot_us,
@@ -73,6 +73,8 @@ fn told_by(telemetry: &Telemetry, before: Option<&Status>) -> Status {
         battery_mv: telemetry.battery_mv,
         table: before.and_then(|status| status.table),
         upload: before.and_then(|status| status.upload),
+        settings_crc32: before.map_or(0, |status| status.settings_crc32),
+        estops: before.map_or(0, |status| status.estops),
     }
 }
 

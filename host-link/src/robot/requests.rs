@@ -4,8 +4,8 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 
 use link_protocol::{
-    ANGLE_UNIT_RAD, Arm, BenchStatus, Configuration, Counters, Flags, Joint, Key, Play, PulseRange,
-    Reply, Request, ServoSettings, Status, TableInfo,
+    ANGLE_UNIT_RAD, BenchStatus, Checked, Configuration, Counters, Flags, Joint, Key, Play,
+    PulseRange, Reply, Request, ServoSettings, StateName, Status, TableInfo,
 };
 
 use super::{BEAT, Robot, StoppedBy};
@@ -104,20 +104,51 @@ impl<P: Port> Robot<P> {
         self.order(Request::Trim { joint, trim }, doing)
     }
 
-    /// Turns pulses on, at the last commanded angles; the servos may jump there.
+    /// Turns pulses on, at the last commanded angles; the servos may jump there. With `clear_estop` a latched e-stop is
+    /// cleared first.
     ///
     /// # Errors
     /// [`LinkError::Refused`] when an e-stop is latched and not cleared, when the battery is low or after three resets; and
     /// the link's.
     pub fn arm(&mut self, clear_estop: bool) -> Result<(), LinkError> {
-        self.order(Request::Arm(Arm { clear_estop }), "arming")
+        if clear_estop {
+            let status = self.status()?;
+            if status.state == StateName::EStopped {
+                self.clear_estops(status.estops)?;
+            }
+        }
+        self.order(Request::Arm, "arming")
     }
 
-    /// Starts to play the active table: `cycles` cycles (0: without end) of `period` each. Returns when the robot has begun.
+    /// Table and settings that the robot holds now.
+    ///
+    /// # Errors
+    /// The link's. A robot without a table has a checksum of 0.
+    pub fn held(&mut self) -> Result<Checked, LinkError> {
+        Ok(self.status()?.held())
+    }
+
+    /// Starts to play the table that the robot holds: `cycles` cycles (0: without end) of `period` each. Returns when the robot
+    /// has begun.
     ///
     /// # Errors
     /// [`LinkError::Refused`] when it is not armed, holds no table or the table is too fast at this period; and the link's.
     pub fn play(&mut self, cycles: u32, period: Duration, detached: bool) -> Result<(), LinkError> {
+        let checked = self.held()?;
+        self.play_checked(cycles, period, detached, checked)
+    }
+
+    /// [`play`](Self::play) of the table and with the settings that were checked.
+    ///
+    /// # Errors
+    /// As [`play`](Self::play), and [`LinkError::Refused`] when the robot holds another table or other settings.
+    pub fn play_checked(
+        &mut self,
+        cycles: u32,
+        period: Duration,
+        detached: bool,
+        checked: Checked,
+    ) -> Result<(), LinkError> {
         let doing = "starting to play";
         let Some(period_us) = u32::try_from(period.as_micros()).ok().filter(|&us| us > 0) else {
             return Err(LinkError::OutOfRange {
@@ -132,6 +163,7 @@ impl<P: Port> Robot<P> {
             cycles,
             period_us,
             detached,
+            checked,
         };
         self.order(Request::Play(play), doing)
     }
@@ -160,7 +192,7 @@ impl<P: Port> Robot<P> {
         self.halt(Request::Stop, "stopping")
     }
 
-    /// Drops the pulses at once, latched until cleared or armed with `clear_estop`. Says what ended the motion.
+    /// Drops the pulses at once, latched until cleared. Says what ended the motion.
     ///
     /// # Errors
     /// The link's.
@@ -187,12 +219,21 @@ impl<P: Port> Robot<P> {
         }
     }
 
-    /// Clears a latched e-stop to Stopped, without arming.
+    /// Clears the e-stops that the robot counts now, to Stopped, without arming.
     ///
     /// # Errors
     /// [`LinkError::Refused`] while pulses are on, and the link's.
     pub fn clear_estop(&mut self) -> Result<(), LinkError> {
-        self.order(Request::ClearEStop, "clearing the e-stop")
+        let count = self.status()?.estops;
+        self.clear_estops(count)
+    }
+
+    /// Clears as many e-stops as were counted in a status; another that came since stays latched.
+    ///
+    /// # Errors
+    /// As [`clear_estop`](Self::clear_estop), and [`LinkError::Refused`] after another e-stop.
+    pub fn clear_estops(&mut self, count: u32) -> Result<(), LinkError> {
+        self.order(Request::ClearEStop { count }, "clearing the e-stop")
     }
 
     /// Sends the robot into its chip's boot loader. The answer comes before it leaves; then the port is dead.

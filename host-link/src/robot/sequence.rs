@@ -10,7 +10,7 @@ use link_protocol::{Flags, Refusal, Status, Telemetry, crc32c};
 use super::await_play::{at_rest, finished};
 use super::{BEAT, Robot};
 use crate::port::Port;
-use crate::session::{Event, LinkError};
+use crate::session::{Event, Follower, LinkError};
 
 const DOING: &str = "uploading the next gait of the playlist";
 /// Beyond the end of the play before, an upload is waited for no longer than this.
@@ -60,15 +60,19 @@ pub struct Sequence {
     accepted: usize,
     /// The leg that plays.
     playing: usize,
+    /// Hash of the settings that all legs were checked for.
+    settings_crc32: u32,
 }
 
 impl Sequence {
-    /// Of these legs, of which the first has been uploaded and was told to play.
-    pub fn playing_first(legs: Vec<Leg>) -> Self {
+    /// Sequence of these legs, of which the first has been uploaded and plays. The settings that all were checked for are
+    /// those of this hash ([`link_protocol::settings_crc32`]).
+    pub fn playing_first(legs: Vec<Leg>, settings_crc32: u32) -> Self {
         Self {
             legs,
             accepted: 1,
             playing: 0,
+            settings_crc32,
         }
     }
 
@@ -152,10 +156,14 @@ impl Sequence {
         let before = self.legs.get(self.playing).map(Leg::duration);
         let now = robot.port.now();
         let deadline = now + before.unwrap_or_default() + GRACE;
-        let play = (leg.cycles, leg.period_us()?);
+        let follower = Follower {
+            cycles: leg.cycles,
+            period_us: leg.period_us()?,
+            settings_crc32: self.settings_crc32,
+        };
         let wanted = robot
             .session
-            .upload_follower(now, &leg.table, play, deadline);
+            .upload_follower(now, &leg.table, follower, deadline);
         loop {
             match robot.step(robot.port.now() + BEAT, DOING)? {
                 Some(Event::Uploaded { ticket, .. }) if ticket == wanted => {

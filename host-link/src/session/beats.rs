@@ -49,6 +49,11 @@ impl Beats {
         self.heard_us = self.heard_us.max(robot_us);
     }
 
+    /// The robot has answered a request: bytes reach it, so that what is lost is replaced quickly again.
+    pub(super) fn reached(&mut self) {
+        self.lost = 0;
+    }
+
     /// What the next one tells of that.
     pub(super) fn heard_us(&self) -> u64 {
         self.heard_us

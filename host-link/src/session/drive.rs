@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use link_protocol::{
-    Chunk, Flags, Heartbeat, Hello, Message, PROTOCOL_CURRENT, PROTOCOL_MIN, Ping, Request,
-    SCHEMA_KEY, StateName,
+    Chunk, Flags, Heartbeat, Hello, Message, PROTOCOL_CURRENT, PROTOCOL_MIN, Request, SCHEMA_KEY,
+    StateName,
 };
 use rand::RngExt;
 
@@ -336,14 +336,10 @@ impl Session {
         self.counters.keep_alives += 1;
         let host_us = u64::try_from(now.as_micros()).unwrap_or(u64::MAX);
         self.beats.sent(&self.trip, self.unwatched(), now, host_us);
-        let beat = if self.version >= 2 {
-            Message::Heartbeat(Heartbeat {
-                host_us,
-                heard_us: self.beats.heard_us(),
-            })
-        } else {
-            Message::Ping(Ping { host_us })
-        };
+        let beat = Message::Heartbeat(Heartbeat {
+            host_us,
+            heard_us: self.beats.heard_us(),
+        });
         // No request, so no number of its own: an hour of them would make the next request look old.
         self.send(self.sequence, &beat);
     }

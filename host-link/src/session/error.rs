@@ -3,7 +3,7 @@
 use std::io;
 use std::time::Duration;
 
-use link_protocol::{Flags, Refusal, StateName, StopCause};
+use link_protocol::{Flags, Refusal, StateName, StopCause, VersionName};
 
 use super::counters::LinkCounters;
 
@@ -71,7 +71,11 @@ pub enum LinkError {
     },
     /// The versions of the protocol do not meet.
     #[error(
-        "the robot's firmware {firmware} speaks versions {robot_min} to {robot_current} of the protocol, this program {host_min} to {host_current}: {}",
+        "the robot's firmware {firmware} speaks versions {} to {} of the protocol, this program {} to {}: {}",
+        VersionName(*robot_min),
+        VersionName(*robot_current),
+        VersionName(*host_min),
+        VersionName(*host_current),
         if robot_current < host_min { "update the robot's firmware" } else { "update this program" }
     )]
     Version {
@@ -88,7 +92,8 @@ pub enum LinkError {
     },
     /// Same version, other messages: one end is a build from between two releases.
     #[error(
-        "the robot's firmware {firmware} and this program both speak version {version} of the protocol but disagree on its messages (keys {robot_key:016x} and {host_key:016x}): build both from the same commit"
+        "the robot's firmware {firmware} and this program both speak version {} of the protocol but disagree on its messages (keys {robot_key:016x} and {host_key:016x}): build both from the same commit",
+        VersionName(*version)
     )]
     Schema {
         /// The version both speak.
@@ -118,13 +123,11 @@ pub enum LinkError {
     },
     /// The robot no longer knows this session.
     #[error(
-        "while {doing}: the robot has opened another session ({open}): it restarted (do the servos pull its supply down?), or another program took it over; look at its status and connect again"
+        "while {doing}: the robot has opened another session: it restarted (do the servos pull its supply down?), or another program took it over; look at its status and connect again"
     )]
     SessionLost {
         /// What was being done.
         doing: &'static str,
-        /// The session that is open now.
-        open: u16,
     },
     /// A stop was sent before this was answered.
     #[error(

@@ -45,10 +45,9 @@ impl Session {
         }
         self.boot_nonce = Some(reply.boot_nonce);
         if reply.session != self.number {
-            self.disown_pending(reply.session);
+            self.disown_pending();
         }
         self.number = reply.session;
-        self.version = reply.protocol_current.min(PROTOCOL_CURRENT);
         self.seal = self.config.key.map(|key| Seal::new(&key, binding));
         (self.signed, self.proven) = (0, 0);
         (self.last_robot_us, self.told) = (None, None);
@@ -100,12 +99,12 @@ impl Session {
 
     /// What is under way was sent in an earlier session and may have acted there, whatever was heard of it since: in this one
     /// it must not act again. A stop may.
-    fn disown_pending(&mut self, open: u16) {
+    fn disown_pending(&mut self) {
         if let Some(pending) = self.pending.take_if(|pending| !pending.request.is_stop())
             && let Owner::Ticket(ticket) = pending.owner
         {
             let doing = describe(&pending.request);
-            self.fail(ticket, LinkError::SessionLost { doing, open });
+            self.fail(ticket, LinkError::SessionLost { doing });
         }
     }
 }

@@ -1,8 +1,8 @@
-//! What a session waits for: a greeting, a request, an upload.
+//! Greeting, request and upload under way.
 
 use std::time::Duration;
 
-use link_protocol::{Begin, Follow, HelloReply, Request};
+use link_protocol::{Begin, Checked, Follow, HelloReply, Request};
 
 use super::Ticket;
 use super::upload::{UploadPhase, Window};
@@ -48,12 +48,23 @@ pub(super) struct Pending {
     pub(super) unsigned: bool,
 }
 
+/// Play of a table that follows the one under way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Follower {
+    /// Number of cycles; 0 plays until stopped.
+    pub cycles: u32,
+    /// Duration of a cycle, µs.
+    pub period_us: u32,
+    /// [`link_protocol::settings_crc32`] of the settings that the table was checked for.
+    pub settings_crc32: u32,
+}
+
 #[derive(Debug)]
 pub(super) struct Upload {
     pub(super) ticket: Ticket,
     pub(super) begin: Begin,
-    /// It is to follow the play under way, for so many cycles of so many µs; else it becomes the active table.
-    pub(super) follows: Option<(u32, u32)>,
+    /// Follows the play under way; `None`: becomes the active table.
+    pub(super) follows: Option<Follower>,
     pub(super) table: Vec<u8>,
     pub(super) started: Duration,
     pub(super) deadline: Duration,
@@ -73,10 +84,14 @@ impl Upload {
         let upload = self.number;
         match self.follows {
             None => Request::Commit { upload },
-            Some((cycles, period_us)) => Request::Follow(Follow {
+            Some(follower) => Request::Follow(Follow {
                 upload,
-                cycles,
-                period_us,
+                cycles: follower.cycles,
+                period_us: follower.period_us,
+                checked: Checked {
+                    table_crc32: self.begin.crc32,
+                    settings_crc32: follower.settings_crc32,
+                },
             }),
         }
     }
@@ -95,7 +110,7 @@ pub(super) fn describe(request: &Request) -> &'static str {
         Request::Begin(_) | Request::Chunk(_) | Request::Commit { .. } | Request::Follow(_) => {
             "uploading the gait"
         }
-        Request::Arm(_) => "arming",
+        Request::Arm => "arming",
         Request::Play(_) => "starting to play",
         Request::Pause { .. } => "pausing",
         Request::Resume => "resuming",
@@ -108,7 +123,7 @@ pub(super) fn describe(request: &Request) -> &'static str {
         Request::Bench => "asking for presence and short starts",
         Request::PulseRange(_) => "asking for a servo's pulse range",
         Request::SetPulseRange { .. } => "setting a servo's pulse range",
-        Request::ClearEStop => "clearing the e-stop",
+        Request::ClearEStop { .. } => "clearing the e-stop",
         Request::EnterBootLoader => "asking for the boot loader",
     }
 }

@@ -54,10 +54,11 @@ impl Session {
                     reply == Reply::Done && !forged
                 } else {
                     // A request of a session that is no more is answered, too.
-                    ours || matches!(reply, Reply::Refused(Refusal::StaleSession { .. }))
+                    ours || matches!(reply, Reply::Refused(Refusal::StaleSession))
                 };
                 if counts {
                     self.last_heard = now;
+                    self.beats.reached();
                     self.answered(header.sequence, reply, now);
                 } else if ours {
                     self.counters.unmatched += 1;
@@ -66,11 +67,9 @@ impl Session {
                 }
             }
             // Only hosts send these: an echo.
-            Message::Hello(_)
-            | Message::Request(_)
-            | Message::KeepAlive
-            | Message::Ping(_)
-            | Message::Heartbeat(_) => self.counters.echoed += 1,
+            Message::Hello(_) | Message::Request(_) | Message::Heartbeat(_) => {
+                self.counters.echoed += 1;
+            }
             // Without a session of our own any robot on the line is the one that is to stop.
             Message::Telemetry(telemetry) if !ours && matches!(self.link, Link::Closed) => {
                 self.counters.foreign += 1;
@@ -108,14 +107,14 @@ impl Session {
     /// Whether a frame of the open session is from who has the key. A robot that has not shown yet that it has it may have none;
     /// one that has signs all but the reasons for which it turns a frame away.
     fn authentic(&mut self, received: &Received) -> bool {
-        let Some(seal) = self.seal.as_ref().filter(|_| self.version >= 2) else {
+        let Some(seal) = &self.seal else {
             return true;
         };
         let turned_away = matches!(
             received.message,
             Ok(Message::HelloReply(_)
                 | Message::Reply(Reply::Refused(
-                    Refusal::StaleSession { .. }
+                    Refusal::StaleSession
                         | Refusal::KeyNeeded
                         | Refusal::WrongKey
                         | Refusal::Version { .. }
@@ -227,8 +226,8 @@ impl Session {
                         ..pending
                     });
                 }
-                (Reply::Refused(Refusal::StaleSession { open }), owner) => {
-                    self.session_lost(owner, &pending.request, open, now);
+                (Reply::Refused(Refusal::StaleSession), owner) => {
+                    self.session_lost(owner, &pending.request, now);
                 }
                 // The first keep-alives of a session are still on their way: this did not act, and is asked again under a new
                 // number. It was heard, so this try does not count, but those that were lost do.
@@ -273,13 +272,13 @@ impl Session {
     }
 
     /// The robot restarted or was taken over. An upload greets again; whatever else was asked did not happen in this session.
-    fn session_lost(&mut self, owner: Owner, request: &Request, open: u16, now: Duration) {
+    fn session_lost(&mut self, owner: Owner, request: &Request, now: Duration) {
         let doing = describe(request);
         if self.upload.is_some() {
-            self.renew_upload(LinkError::SessionLost { doing, open });
+            self.renew_upload(LinkError::SessionLost { doing });
         }
         if let Owner::Ticket(ticket) = owner {
-            self.fail(ticket, LinkError::SessionLost { doing, open });
+            self.fail(ticket, LinkError::SessionLost { doing });
         }
         if self.upload.is_some() {
             self.greet(None, now);
@@ -369,9 +368,8 @@ impl Session {
                 offset,
             } if *number == upload.number => *offset,
             Reply::Refused(Refusal::ChunkOutOfRange { wanted }) if known => *wanted,
-            Reply::Refused(Refusal::StaleSession { open }) if known => {
-                let open = *open;
-                self.renew_upload(LinkError::SessionLost { doing, open });
+            Reply::Refused(Refusal::StaleSession) if known => {
+                self.renew_upload(LinkError::SessionLost { doing });
                 if self.upload.is_some() {
                     self.greet(None, now);
                 }

@@ -1,7 +1,7 @@
 //! What a host in haste leaves in a buffer before it dies. The tests of the emulated board include this file too.
 
 use host_link::{Port, Robot};
-use link_protocol::{Arm, Header, Heartbeat, MAX_ENCODED, Message, Request, encode};
+use link_protocol::{Header, Heartbeat, MAX_ENCODED, Message, Request, encode};
 
 /// Writes keep-alives of this session, each later than the one before, and requests that would set the robot in motion again,
 /// as many as `buffer` holds.
@@ -15,7 +15,7 @@ pub(crate) fn fill<P: Port>(robot: &mut Robot<P>, buffer: usize) {
             // A millisecond of the robot's time lies in 20 of them.
             heard_us: now_us - 10_000 + u64::from(number),
         });
-        let arm = Message::Request(Request::Arm(Arm { clear_estop: true }));
+        let arm = Message::Request(Request::Arm);
         for (sequence, message) in [(0, heartbeat), (30_000 + number, arm)] {
             let mut frame = [0; MAX_ENCODED];
             let header = Header::new(session, sequence);

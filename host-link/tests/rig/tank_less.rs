@@ -16,6 +16,11 @@ use link_protocol::{
     StateName, TableInfo, TangentialDrag,
 };
 
+/// Hash of the settings of a robot that was just made.
+pub(crate) fn settings_as_built() -> u32 {
+    Robot::new(1).brain.held().settings_crc32
+}
+
 /// A brain and its clock.
 pub(crate) struct Robot {
     brain: Brain,

@@ -11,7 +11,6 @@ const target = process.env.LAB_TARGET ?? join(root, "target");
 export const PAGE = pathToFileURL(join(target, "lab/swimmer-lab.html")).href;
 export const MODULE = join(target, "lab/explore.wasm");
 export const SWIMMER = join(target, "debug/swimmer");
-export const COMPRESSED_LOG = join(root, "swimmer-files/tests/lz4.mcap");
 export const OUT = join(target, "lab");
 export const SCREENSHOTS = join(OUT, "screenshots");
 mkdirSync(SCREENSHOTS, { recursive: true });

@@ -111,9 +111,16 @@ impl Page {
         );
         let uploaded = self.asked("session upload", json!({ "gait": "circle:0.5" }));
         assert_eq!(uploaded["event"], "uploaded", "{uploaded}");
-        let armed = self.request(&json!({ "Arm": { "clear_estop": false } }));
+        let status = self.request(&json!("Status"))["reply"]["Status"].clone();
+        let armed = self.request(&json!("Arm"));
         assert_eq!(armed["event"], "answered", "{armed}");
-        let play = json!({ "Play": { "cycles": 0, "period_us": 4_000_000, "detached": false } });
+        let checked = json!({
+            "table_crc32": status["table"]["crc32"],
+            "settings_crc32": status["settings_crc32"],
+        });
+        let play = json!({ "Play": {
+            "cycles": 0, "period_us": 4_000_000, "detached": false, "checked": checked,
+        } });
         assert_eq!(self.request(&play)["event"], "answered");
         for _ in 0..600 {
             self.step();

@@ -1,4 +1,4 @@
-//! One or more of every message: for goldens and corruption alike. Only ever appended to.
+//! One or more of every message, for golden files and corruption tests. Only appended to.
 use heapless::{String, Vec};
 use link_protocol::*;
 
@@ -21,10 +21,10 @@ const TABLE: TableInfo = TableInfo {
 };
 
 fn hello() -> Hello {
-    // The schema key of version 1 itself is fixed in a test of its own.
+    // The schema key itself is fixed by a line of its own in the golden file.
     Hello {
-        protocol_min: 1,
-        protocol_current: 1,
+        protocol_min: 0x10,
+        protocol_current: 0x10,
         schema_key: *b"schemakey"[..8].first_chunk().unwrap(),
         host_nonce: 0x1234_5678,
     }
@@ -33,8 +33,8 @@ fn hello() -> Hello {
 fn hello_reply() -> HelloReply {
     HelloReply {
         host_nonce: 0x1234_5678,
-        protocol_min: 1,
-        protocol_current: 1,
+        protocol_min: 0x10,
+        protocol_current: 0x10,
         schema_key: hello().schema_key,
         firmware: FirmwareVersion {
             major: 0,
@@ -73,6 +73,8 @@ fn status() -> Status {
         battery_mv: Some(5_012),
         table: Some(TABLE),
         upload: Some(1040),
+        settings_crc32: 0xFEED_F00D,
+        estops: 2,
     }
 }
 
@@ -119,7 +121,7 @@ fn counters() -> Counters {
     }
 }
 
-fn requests() -> std::vec::Vec<(&'static str, Request)> {
+pub(crate) fn requests() -> std::vec::Vec<(&'static str, Request)> {
     let chunk = |len: usize| Chunk {
         upload: 7,
         offset: 1040,
@@ -176,17 +178,14 @@ fn requests() -> std::vec::Vec<(&'static str, Request)> {
         ("request/chunk of one", Request::Chunk(chunk(1))),
         ("request/chunk, full", Request::Chunk(chunk(MAX_CHUNK))),
         ("request/commit", Request::Commit { upload: 7 }),
-        ("request/arm", Request::Arm(Arm { clear_estop: false })),
-        (
-            "request/arm, clear",
-            Request::Arm(Arm { clear_estop: true }),
-        ),
+        ("request/arm", Request::Arm),
         (
             "request/play",
             Request::Play(Play {
                 cycles: 3,
                 period_us: 30_000_000,
                 detached: true,
+                checked: CHECKED,
             }),
         ),
         ("request/pause", Request::Pause { detached: true }),
@@ -196,17 +195,43 @@ fn requests() -> std::vec::Vec<(&'static str, Request)> {
         ("request/clear resets", Request::ClearResets),
         ("request/crash message", Request::CrashMessage),
         ("request/table", Request::Table),
+        ("request/set key", Request::SetKey(Some(KEY))),
+        ("request/no key", Request::SetKey(None)),
+        ("request/bench", Request::Bench),
+        ("request/pulse range", Request::PulseRange(Joint::Front)),
+        (
+            "request/set pulse range",
+            Request::SetPulseRange {
+                joint: Joint::Back,
+                range: RANGE,
+            },
+        ),
+        ("request/clear estop", Request::ClearEStop { count: 2 }),
+        ("request/enter boot loader", Request::EnterBootLoader),
+        (
+            "request/follow",
+            Request::Follow(Follow {
+                upload: 7,
+                cycles: 11,
+                period_us: 3_840_000,
+                checked: CHECKED,
+            }),
+        ),
     ]
 }
 
+#[allow(clippy::too_many_lines)] // one entry a reason
 fn refusals() -> std::vec::Vec<(&'static str, Refusal)> {
     vec![
-        (
-            "refused/stale session",
-            Refusal::StaleSession { open: 0xBEEF },
-        ),
+        ("refused/stale session", Refusal::StaleSession),
         ("refused/superseded", Refusal::Superseded { last: 300 }),
-        ("refused/version", Refusal::Version { min: 1, current: 1 }),
+        (
+            "refused/version",
+            Refusal::Version {
+                min: 0x10,
+                current: 0x10,
+            },
+        ),
         ("refused/not understood", Refusal::NotUnderstood),
         ("refused/not armed", Refusal::NotArmed),
         ("refused/e-stopped", Refusal::EStopped),
@@ -279,11 +304,31 @@ fn refusals() -> std::vec::Vec<(&'static str, Refusal)> {
                 phi2: 1,
             },
         ),
-        ("refused/detached", Refusal::DetachedEndless),
+        ("refused/detached", Refusal::DetachedTooLong),
         ("refused/swap pending", Refusal::SwapPending),
         ("refused/bad value", Refusal::BadValue { field: 4 }),
         ("refused/slow", Refusal::SlowToNeutral { needs_ms: 1_200 }),
         ("refused/busy", Refusal::Busy),
+        ("refused/key needed", Refusal::KeyNeeded),
+        ("refused/wrong key", Refusal::WrongKey),
+        ("refused/needs presence", Refusal::NeedsPresence),
+        ("refused/not fresh", Refusal::NotFresh),
+        (
+            "refused/not joined",
+            Refusal::NotJoined {
+                joint: Joint::Back,
+                step: -127,
+            },
+        ),
+        (
+            "refused/other table",
+            Refusal::OtherTable { held: 0xDEAD_BEEF },
+        ),
+        (
+            "refused/other settings",
+            Refusal::OtherSettings { held: 0xFEED_F00D },
+        ),
+        ("refused/e-stop count", Refusal::EStopCount { count: 3 }),
     ]
 }
 
@@ -321,128 +366,42 @@ fn replies() -> std::vec::Vec<(&'static str, Reply)> {
         ),
         ("reply/table", Reply::Table(Some(TABLE))),
         ("reply/no table", Reply::Table(None)),
-    ]
-}
-
-/// Every message with a name.
-pub(crate) fn messages() -> std::vec::Vec<(&'static str, Message)> {
-    let mut all = version_2_frozen();
-    all.extend(version_2_appended());
-    all
-}
-
-/// Those of version 2 as it was when it was frozen, with those of version 1.
-pub(crate) fn version_2_frozen() -> std::vec::Vec<(&'static str, Message)> {
-    let mut all = version_1();
-    all.extend(version_2());
-    all
-}
-
-/// What was appended to version 2 since.
-pub(crate) fn version_2_appended() -> std::vec::Vec<(&'static str, Message)> {
-    vec![
-        (
-            "request/follow",
-            Message::Request(Request::Follow(Follow {
-                upload: 7,
-                cycles: 11,
-                period_us: 3_840_000,
-            })),
-        ),
-        (
-            "refused/not joined",
-            Message::Reply(Reply::Refused(Refusal::NotJoined {
-                joint: Joint::Back,
-                step: -127,
-            })),
-        ),
-    ]
-}
-
-/// Those of version 1.
-pub(crate) fn version_1() -> std::vec::Vec<(&'static str, Message)> {
-    let mut all = frozen();
-    all.extend(appended());
-    all
-}
-
-/// What came with version 2.
-fn version_2() -> std::vec::Vec<(&'static str, Message)> {
-    let refused = |refusal| Message::Reply(Reply::Refused(refusal));
-    let range = PulseRange {
-        shortest_ns: 1_392_000,
-        longest_ns: 1_608_000,
-    };
-    vec![
-        (
-            "heartbeat",
-            Message::Heartbeat(Heartbeat {
-                host_us: 1_234_567_890_123,
-                heard_us: 42_000,
-            }),
-        ),
-        ("request/bench", Message::Request(Request::Bench)),
-        (
-            "request/pulse range",
-            Message::Request(Request::PulseRange(Joint::Front)),
-        ),
-        (
-            "request/set pulse range",
-            Message::Request(Request::SetPulseRange {
-                joint: Joint::Back,
-                range,
-            }),
-        ),
-        ("request/clear estop", Message::Request(Request::ClearEStop)),
-        (
-            "request/enter boot loader",
-            Message::Request(Request::EnterBootLoader),
-        ),
         (
             "reply/bench",
-            Message::Reply(Reply::Bench(BenchStatus {
+            Reply::Bench(BenchStatus {
                 window_s: 119,
                 usb: true,
                 short_starts: 2,
                 built: CONFIGURATION,
-            })),
+            }),
         ),
-        (
-            "reply/pulse range",
-            Message::Reply(Reply::PulseRange(range)),
-        ),
-        ("refused/needs presence", refused(Refusal::NeedsPresence)),
-        ("refused/not fresh", refused(Refusal::NotFresh)),
-    ]
-}
-
-/// What was appended to version 1 since it was frozen.
-pub(crate) fn appended() -> std::vec::Vec<(&'static str, Message)> {
-    let refused = |refusal| Message::Reply(Reply::Refused(refusal));
-    vec![
-        (
-            "request/set key",
-            Message::Request(Request::SetKey(Some(KEY))),
-        ),
-        ("request/no key", Message::Request(Request::SetKey(None))),
-        ("refused/key needed", refused(Refusal::KeyNeeded)),
-        ("refused/wrong key", refused(Refusal::WrongKey)),
+        ("reply/pulse range", Reply::PulseRange(RANGE)),
     ]
 }
 
 pub(crate) const KEY: Key = Key(*b"not a secret key");
 
-/// What version 1 was when it was frozen.
-pub(crate) fn frozen() -> std::vec::Vec<(&'static str, Message)> {
+const RANGE: PulseRange = PulseRange {
+    shortest_ns: 1_392_000,
+    longest_ns: 1_608_000,
+};
+
+const CHECKED: Checked = Checked {
+    table_crc32: 0xDEAD_BEEF,
+    settings_crc32: 0xFEED_F00D,
+};
+
+/// Every message with a name.
+pub(crate) fn messages() -> std::vec::Vec<(&'static str, Message)> {
     let mut all = vec![
         ("hello", Message::Hello(hello())),
         ("hello reply", Message::HelloReply(hello_reply())),
         ("telemetry", Message::Telemetry(telemetry())),
-        ("keep-alive", Message::KeepAlive),
         (
-            "ping",
-            Message::Ping(Ping {
+            "heartbeat",
+            Message::Heartbeat(Heartbeat {
                 host_us: 1_234_567_890_123,
+                heard_us: 42_000,
             }),
         ),
         (
@@ -472,18 +431,9 @@ pub(crate) fn frozen() -> std::vec::Vec<(&'static str, Message)> {
     all
 }
 
-/// The frame of a message, as the goldens hold it: session 0xBEEF, sequence 300, without the burst start.
-pub(crate) fn frame(version: u8, message: &Message) -> std::vec::Vec<u8> {
+/// The frame of a message, as the golden files hold it: session 0xBEEF, sequence 300, without the burst start.
+pub(crate) fn frame(message: &Message) -> std::vec::Vec<u8> {
     let mut out = [0; MAX_ENCODED];
-    let len = encode(
-        Header {
-            version,
-            session: 0xBEEF,
-            sequence: 300,
-        },
-        message,
-        &mut out,
-    )
-    .unwrap();
+    let len = encode(Header::new(0xBEEF, 300), message, &mut out).unwrap();
     out[1..len].to_vec()
 }

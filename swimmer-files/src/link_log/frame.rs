@@ -74,7 +74,6 @@ impl LinkFrame {
 #[derive(Deserialize)]
 struct Told<'a> {
     host_time_ns: u64,
-    /// Earlier logs say null where nothing is known.
     robot_time_us: Option<u64>,
     #[serde(borrow)]
     raw_hex: Cow<'a, str>,
@@ -144,8 +143,6 @@ fn message_json(message: &Message) -> Value {
         Message::Request(body) => serde_json::to_value(body),
         Message::Reply(body) => serde_json::to_value(body),
         Message::Telemetry(body) => serde_json::to_value(body),
-        Message::KeepAlive => Ok(Value::Null),
-        Message::Ping(body) => serde_json::to_value(body),
         Message::Pong(body) => serde_json::to_value(body),
         Message::Heartbeat(body) => serde_json::to_value(body),
     };

@@ -1,19 +1,11 @@
-//! The records of an MCAP file as far as a link log has them: an opcode, a length, the record; chunks hold records in turn, plain,
-//! or compressed by LZ4 as older logs are. The library that writes them reads every record that the format knows; here it would
-//! be a twentieth of the lab page's module.
-
-use std::io::Read as _;
-
-use lz4_flex::frame::FrameDecoder;
+//! The records of an MCAP file as far as a link log has them: an opcode, a length, the record; chunks hold records in turn. The
+//! library that writes them reads every record that the format knows; here it would be a twentieth of the lab page's module.
 
 /// Ends a file.
 pub(super) const FOOTER: u8 = 0x02;
 pub(super) const CHANNEL: u8 = 0x04;
 pub(super) const MESSAGE: u8 = 0x05;
 pub(super) const CHUNK: u8 = 0x06;
-
-/// Larger than any chunk that a writer makes by default, small enough to allocate: a damaged length must not become an allocation.
-const LARGEST_CHUNK: u64 = 64 << 20;
 
 /// Opcodes and records, as long as they are whole; what is left are bytes of none.
 pub(super) struct Records<'a>(pub(super) &'a [u8]);
@@ -57,33 +49,18 @@ pub(super) fn message(record: &[u8]) -> Option<(u16, &[u8])> {
 ///
 /// # Errors
 /// What keeps them from being read.
-pub(super) fn of_chunk(record: &[u8]) -> Result<std::borrow::Cow<'_, [u8]>, String> {
-    let parts = || -> Option<(u64, &[u8], &[u8])> {
-        // Behind two times.
-        let (length, rest) = record.get(16..)?.split_first_chunk::<8>()?;
-        // Behind a checksum.
-        let mut rest = rest.get(4..)?;
-        let compression = field::<4>(&mut rest)?;
-        Some((
-            u64::from_le_bytes(*length),
-            compression,
-            field::<8>(&mut rest)?,
-        ))
+pub(super) fn of_chunk(record: &[u8]) -> Result<&[u8], String> {
+    let parts = || -> Option<(&[u8], &[u8])> {
+        // After two times, a length and a checksum.
+        let mut rest = record.get(16 + 8 + 4..)?;
+        Some((field::<4>(&mut rest)?, field::<8>(&mut rest)?))
     };
-    let (length, compression, records) = parts().ok_or("a chunk is damaged")?;
-    match compression {
-        b"" => Ok(records.into()),
-        b"lz4" => {
-            let mut plain = Vec::new();
-            let decoded = FrameDecoder::new(records)
-                .take(length.min(LARGEST_CHUNK))
-                .read_to_end(&mut plain);
-            decoded.map_err(|why| format!("a chunk is damaged: {why}"))?;
-            Ok(plain.into())
-        }
-        other => Err(format!(
-            "a chunk is compressed by {}, which is not read; let `mcap compress --compression lz4` write it anew",
-            String::from_utf8_lossy(other)
-        )),
+    let (compression, records) = parts().ok_or("a chunk is damaged")?;
+    if compression.is_empty() {
+        return Ok(records);
     }
+    Err(format!(
+        "a chunk is compressed by {}, which is not read; let `mcap compress --compression none` write it anew",
+        String::from_utf8_lossy(compression)
+    ))
 }

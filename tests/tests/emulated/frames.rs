@@ -4,8 +4,8 @@
 use gait_player::GaitTable;
 use link_protocol::Header;
 use link_protocol::{
-    Arm, Begin, Chunk, Heartbeat, Hello, Joint, Kind, MAX_ENCODED, Message, PROTOCOL_CURRENT,
-    PROTOCOL_MIN, Ping, Play, Request, SCHEMA_KEY, ServoSettings, crc32c, encode, encode_body,
+    Begin, Checked, Chunk, Heartbeat, Hello, Joint, Kind, MAX_ENCODED, Message, PROTOCOL_CURRENT,
+    PROTOCOL_MIN, Play, Request, SCHEMA_KEY, ServoSettings, Status, crc32c, encode, encode_body,
 };
 use rand::{Rng, RngExt};
 use rand_chacha::ChaCha8Rng;
@@ -31,6 +31,9 @@ pub(crate) struct Frames {
     offset: usize,
     /// The robot's clock as it was heard last, µs.
     heard_us: u64,
+    /// Table and settings of the robot, and its e-stops, as a status reported them last.
+    held: Checked,
+    estops: u32,
     last: Vec<u8>,
 }
 
@@ -55,6 +58,11 @@ impl Frames {
             upload: 0,
             offset: 0,
             heard_us: 0,
+            held: Checked {
+                table_crc32: 0,
+                settings_crc32: 0,
+            },
+            estops: 0,
             last: Vec::new(),
         }
     }
@@ -69,6 +77,11 @@ impl Frames {
     /// The robot said what time it is.
     pub(crate) fn heard(&mut self, robot_us: u64) {
         self.heard_us = robot_us;
+    }
+
+    /// The robot reported its status.
+    pub(crate) fn reported(&mut self, status: &Status) {
+        (self.held, self.estops) = (status.held(), status.estops);
     }
 
     /// The robot opened, or goes on with, this upload.
@@ -120,26 +133,20 @@ impl Frames {
     /// What a host sends in a session; stops are rare, so that the robot is mostly in motion.
     fn honest(&mut self) -> Vec<u8> {
         let request = match self.rng.random_range(0..100) {
-            0..15 => {
+            0..20 => {
                 let heartbeat = Heartbeat {
                     host_us: self.rng.random(),
                     heard_us: self.heard_us,
                 };
                 return encoded(self.session, 0, &Message::Heartbeat(heartbeat));
             }
-            15..20 => {
-                let ping = Ping {
-                    host_us: self.rng.random(),
-                };
-                return encoded(self.session, 0, &Message::Ping(ping));
-            }
-            20..35 => Request::Arm(Arm {
-                clear_estop: self.rng.random_bool(0.7),
-            }),
+            20..30 => Request::Arm,
+            30..35 => Request::ClearEStop { count: self.estops },
             35..55 => Request::Play(Play {
                 cycles: self.rng.random_range(0..4),
                 period_us: self.rng.random_range(2_000_000..9_000_000),
                 detached: self.rng.random_bool(0.2),
+                checked: self.held,
             }),
             55..60 => self.begin(),
             60..80 => self.chunk(),
@@ -230,7 +237,7 @@ impl Frames {
         let kind = match self.rng.random_range(0..10) {
             0 => self.rng.random(),
             1 => Kind::Hello as u8,
-            2 => Kind::Ping as u8,
+            2 => Kind::Heartbeat as u8,
             _ => Kind::Request as u8,
         };
         let len = self.rng.random_range(0..24);
@@ -262,6 +269,10 @@ fn requests_begin_with_the_bytes_named_here() {
         cycles: 1,
         period_us: 1,
         detached: false,
+        checked: Checked {
+            table_crc32: 0,
+            settings_crc32: 0,
+        },
     };
     for (first, request) in [
         (PLAY, Request::Play(play)),

@@ -206,7 +206,10 @@ impl Storm {
         match message {
             Message::HelloReply(reply) if reply.session != 0 => self.frames.greeted(reply.session),
             Message::Telemetry(telemetry) => self.frames.heard(telemetry.robot_us),
-            Message::Reply(Reply::Status(status)) => self.status = Some(*status),
+            Message::Reply(Reply::Status(status)) => {
+                self.frames.reported(status);
+                self.status = Some(*status);
+            }
             Message::Reply(Reply::Wanted { upload, .. }) => self.frames.upload(*upload),
             Message::Reply(Reply::Counters(counters)) => {
                 (self.acted, self.dropped) = (counters.acted, counters.dropped);

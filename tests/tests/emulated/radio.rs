@@ -6,7 +6,10 @@ use std::time::Duration;
 use gait_player::GaitTable;
 use host_link::port::{Character, FaultPlan, FaultyPort, heard};
 use host_link::{Port as _, Robot};
-use link_protocol::{Header, Hello, MAX_ENCODED, Message, Request, SCHEMA_KEY, StateName, encode};
+use link_protocol::{
+    Header, Heartbeat, Hello, MAX_ENCODED, Message, PROTOCOL_CURRENT, PROTOCOL_MIN, Request,
+    SCHEMA_KEY, StateName, encode,
+};
 
 use crate::promise::seen;
 use crate::rig::{self, Port};
@@ -28,8 +31,8 @@ fn frame(message: &Message) -> Vec<u8> {
 
 fn hello() -> Vec<u8> {
     frame(&Message::Hello(Hello {
-        protocol_min: 1,
-        protocol_current: 1,
+        protocol_min: PROTOCOL_MIN,
+        protocol_current: PROTOCOL_CURRENT,
         schema_key: SCHEMA_KEY,
         host_nonce: 9,
     }))
@@ -119,7 +122,11 @@ fn bytes_are_lost_while_flash_is_erased_and_the_link_goes_on() {
     // It is stored as soon as the robot is stopped, while the line is never silent.
     robot.stop().unwrap();
     rig::pass(&mut robot, Duration::from_millis(400));
-    let keep_alive = frame(&Message::KeepAlive).repeat(300);
+    let heartbeat = Heartbeat {
+        host_us: 0,
+        heard_us: 0,
+    };
+    let keep_alive = frame(&Message::Heartbeat(heartbeat)).repeat(200);
     robot.port_mut().write(&keep_alive).unwrap();
     rig::pass(&mut robot, Duration::from_millis(400));
     let events = rig::events(&mut robot);

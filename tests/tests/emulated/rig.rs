@@ -104,6 +104,13 @@ pub(crate) fn board_of(robot: &mut Robot<Port>) -> &mut Board {
     robot.port_mut().device_mut().board_mut()
 }
 
+/// Closes the bench jumper for a moment: what needs presence may be set for two minutes.
+pub(crate) fn come_near(robot: &mut Robot<Port>) {
+    board_of(robot).set_jumper(true).unwrap();
+    live(robot, Duration::from_millis(300));
+    board_of(robot).set_jumper(false).unwrap();
+}
+
 /// The pack's voltage \[V\], through a divider of 4.7.
 pub(crate) fn set_pack(board: &mut Board, volts: f64) {
     board.set_battery(volts / 4.7).unwrap();

@@ -286,6 +286,7 @@ fn three_robots_command_the_same() {
 
         let port = rig::port(Image::Nano);
         let mut robot = Robot::connect(port, 1).unwrap();
+        rig::come_near(&mut robot);
         scenario.play(&mut robot);
         rig::pass(&mut robot, Duration::from_millis(100));
         let events = rig::events(&mut robot);

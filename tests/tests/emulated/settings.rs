@@ -65,13 +65,15 @@ fn the_slowest_erase_brings_no_watchdog_reset() {
     let mut robot = rig::robot();
     let folder = tempfile::tempdir().unwrap();
     let image = folder.path().join("flash.bin");
-    let mut trims = std::iter::successors(Some(0.0), |trim| Some((trim + 0.001) % 0.02)).skip(1);
+    let mut trims = std::iter::successors(Some(0.0), |trim| Some((trim + 0.001) % 0.016)).skip(1);
     let mut save = |robot: &mut Robot<Port>, wait: Duration| {
         let stored = robot.trim(Joint::Front, trims.next().unwrap());
         rig::pass(robot, wait);
         stored
     };
 
+    // Somebody at the robot may write as often as he likes.
+    rig::come_near(&mut robot);
     // As it was before the record that made the first sector be erased.
     rig::events(&mut robot);
     let mut before = 0;

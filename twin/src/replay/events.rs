@@ -252,8 +252,8 @@ fn moves(request: &Request) -> bool {
         | Request::Trim { .. }
         | Request::Commit { .. }
         | Request::Follow(_)
-        | Request::ClearEStop
-        | Request::Arm(_)
+        | Request::ClearEStop { .. }
+        | Request::Arm
         | Request::Play(_)
         | Request::Pause { .. }
         | Request::Resume
@@ -302,6 +302,9 @@ impl Facts {
                         | Request::Commit { .. },
                     )),
                 ) => break,
+                (Direction::ToRobot, Ok(Message::Request(Request::Play(play)))) => {
+                    facts.table = facts.table.or(Some(play.checked.table_crc32));
+                }
                 (Direction::ToRobot, Ok(Message::Request(Request::Servo(joint)))) => {
                     asked.insert(number, *joint);
                 }

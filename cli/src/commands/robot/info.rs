@@ -1,7 +1,7 @@
 //! `swimmer robot info`: who is there.
 
 use link_protocol::{
-    Board, Configuration, Counters, HelloReply, ResetReason, TableInfo, TangentialDrag,
+    Board, Configuration, Counters, HelloReply, ResetReason, TableInfo, TangentialDrag, VersionName,
 };
 
 use super::access::Access;
@@ -66,7 +66,8 @@ fn answer(
             "firmware",
             format!(
                 "{firmware}{of_commit}, protocol {} to {}",
-                hello.protocol_min, hello.protocol_current
+                VersionName(hello.protocol_min),
+                VersionName(hello.protocol_current)
             ),
         )
         .row(

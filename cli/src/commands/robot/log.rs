@@ -183,10 +183,16 @@ pub(super) fn replay_log(arguments: &Replay, output: Output) -> Outcome {
             "; the robot held a gait with CRC {crc32:08x} when the log began: name it with --gait"
         )
     });
+    let settings = replayed.other_settings.map_or_else(String::new, |crc32| {
+        format!(
+            "; the robot had settings (hash {crc32:08x}) that the log does not hold: record after \
+             `swimmer robot servo` and `swimmer robot configure` in one session"
+        )
+    });
     answer_no(
         output,
         &answer,
-        format!("the log and the brain differ{missing}"),
+        format!("the log and the brain differ{missing}{settings}"),
     )
 }
 

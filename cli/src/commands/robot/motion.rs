@@ -23,7 +23,7 @@ use crate::failure::{Failure, Outcome};
 use crate::interrupt::{CTRL_C, Interrupt};
 use crate::output::{Output, aside};
 
-/// Longest that a play goes on detached unless `--for` says otherwise, s.
+/// Longest detached play that a robot accepts, s.
 const ALONE_S: f64 = 3600.0;
 
 /// What the first pulses do, said before they come.
@@ -116,9 +116,11 @@ pub(super) fn play(access: &Access, play: &Play, output: Output) -> Outcome {
         .map(|gait| BeforePlay::new(gait, &play.owner))
         .transpose()?;
     let mut line = access.connect("swimmer robot play", pace)?;
-    nothing_under_way(&line.robot.status()?)?;
+    let status = line.robot.status()?;
+    nothing_under_way(&status)?;
+    let mut checked = status.held();
     if let Some(upload) = upload {
-        upload.send(&mut line, &interrupt)?;
+        checked.table_crc32 = upload.send(&mut line, &interrupt)?;
     }
     let cycles = play.cycles.unwrap_or(0);
     let robot = &mut line.robot;
@@ -127,7 +129,8 @@ pub(super) fn play(access: &Access, play: &Play, output: Output) -> Outcome {
         Err(refused @ LinkError::Refused { .. }) => return Err(refused.into()),
         armed => stopped_on_failure(robot, armed)?,
     }
-    let begun = robot.play(cycles, Duration::from_secs_f64(play.period), play.detach);
+    let period = Duration::from_secs_f64(play.period);
+    let begun = robot.play_checked(cycles, period, play.detach, checked);
     stopped_on_failure(robot, begun)?;
     if play.detach {
         let status = robot.status()?;
@@ -146,28 +149,22 @@ pub(super) fn play(access: &Access, play: &Play, output: Output) -> Outcome {
     line.close()
 }
 
-/// A detached play has no link to end it: how long it may go on alone is said beforehand.
+/// Refuses a detached play that is too long: it has no link to end it.
 fn alone_for_long(play: &Play) -> Outcome {
     let Some(cycles) = play.cycles.filter(|_| play.detach) else {
         return Ok(());
     };
-    let limit = play.at_most.unwrap_or(ALONE_S);
+    let limit = play.at_most.unwrap_or(ALONE_S).min(ALONE_S);
     let takes = f64::from(cycles) * play.period;
     if takes <= limit {
         return Ok(());
     }
     Err(Failure::BadInput(format!(
-        "{cycles} cycles of {} s take {}, and the robot would play them by itself for longer than {}: give fewer cycles, or allow it with --for, as --for {}",
+        "{cycles} cycles of {} s take {}, and the robot would play them by itself for longer than {}: give fewer cycles, or leave out --detach",
         play.period,
         playing::duration(takes),
         playing::duration(limit),
-        in_minutes(takes)
     )))
-}
-
-/// As `--for` reads it.
-fn in_minutes(seconds: f64) -> String {
-    format!("{}min", (seconds / 60.0).ceil())
 }
 
 /// Waits for the end of a play that began detached.

@@ -9,7 +9,7 @@ use std::time::Duration;
 use forecast::playlist::{self, PlaylistTable, Repeated};
 use host_link::LinkError;
 use host_link::robot::{Leg, Sequence};
-use link_protocol::{Configuration, Flags, Status};
+use link_protocol::{Checked, Configuration, Flags, Status, crc32c};
 use serde::Serialize;
 use swimmer_files::{Playlist, SwimmerFile};
 use swimmer_model::{Model, Pose};
@@ -88,7 +88,9 @@ pub(super) fn play(
     let file = owner.map(load_swimmer).transpose()?;
     let tables = tables(&playlist, path)?;
     let mut line = access.connect("swimmer robot play", Pace::AsFastAsPossible)?;
-    nothing_under_way(&line.robot.status()?)?;
+    let status = line.robot.status()?;
+    nothing_under_way(&status)?;
+    let settings_crc32 = status.settings_crc32;
     let configuration = line.robot.configuration()?;
     if !play.owner.force {
         made_for_it(&playlist, &configuration, file.as_ref())?;
@@ -105,7 +107,7 @@ pub(super) fn play(
         let name = playlist.steps[0].gait.readable();
         send_table(&mut line, &name, &first.table, interrupt)?;
     }
-    let status = through(&mut line, &tables, interrupt)?;
+    let status = through(&mut line, &tables, settings_crc32, interrupt)?;
     let status = ready(&mut line, status);
     output.answer(&PlayedAnswer {
         state: state(status.state),
@@ -211,7 +213,12 @@ fn in_time(tables: &[PlaylistTable], line: &Line) -> Outcome {
 }
 
 /// From the first pulse to the end of the last cycle; Ctrl-C and failures stop the robot.
-fn through(line: &mut Line, tables: &[PlaylistTable], interrupt: &Interrupt) -> Outcome<Status> {
+fn through(
+    line: &mut Line,
+    tables: &[PlaylistTable],
+    settings_crc32: u32,
+    interrupt: &Interrupt,
+) -> Outcome<Status> {
     let legs: Vec<Leg> = tables
         .iter()
         .map(|table| Leg {
@@ -224,14 +231,18 @@ fn through(line: &mut Line, tables: &[PlaylistTable], interrupt: &Interrupt) -> 
         return Err(Failure::BadInput("an empty playlist".to_owned()));
     };
     let (cycles, period, count) = (first.cycles, first.period, legs.len());
+    let checked = Checked {
+        table_crc32: crc32c(&first.table),
+        settings_crc32,
+    };
     match line.robot.arm(false) {
         // Nothing was powered by this, and what the robot does instead is not ours to stop.
         Err(refused @ LinkError::Refused { .. }) => return Err(refused.into()),
         armed => stopped_on_failure(&mut line.robot, armed)?,
     }
-    let begun = line.robot.play(cycles, period, false);
+    let begun = line.robot.play_checked(cycles, period, false, checked);
     stopped_on_failure(&mut line.robot, begun)?;
-    let mut sequence = Sequence::playing_first(legs);
+    let mut sequence = Sequence::playing_first(legs, settings_crc32);
     let progress = Progress::of_a_whole("");
     loop {
         let (robot, holder) = line.split();

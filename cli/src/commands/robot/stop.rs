@@ -52,14 +52,16 @@ pub(super) fn estop(access: &Access, arguments: &Estop, output: Output) -> Outco
 /// Ends the latch; whatever follows is asked for again.
 fn clear(access: &Access, yes: bool, output: Output) -> Outcome {
     let mut line = access.connect("swimmer robot estop --clear", Pace::AsFastAsPossible)?;
-    let estopped = line.robot.status()?.state == StateName::EStopped;
+    // Before the question: an e-stop that comes while the operator looks stays latched.
+    let before = line.robot.status()?;
+    let estopped = before.state == StateName::EStopped;
     if estopped && !yes && !confirmed("Is it safe to end the e-stop? [y/N]") {
         return Err(Failure::Tried(
             "the e-stop is still latched: nobody said yes; without a terminal say so with --yes"
                 .to_owned(),
         ));
     }
-    line.robot.clear_estop()?;
+    line.robot.clear_estops(before.estops)?;
     let sentence = if estopped {
         "Cleared: the robot is stopped, and `arm` or `play` powers it again."
     } else {

@@ -163,18 +163,18 @@ impl BeforePlay {
         })
     }
 
-    /// Uploads it.
+    /// Uploads it; returns the checksum of its table.
     ///
     /// # Errors
-    /// [`Failure::Tried`] where it is another swimmer's or the robot refuses it, and the link's.
-    pub(super) fn send(&self, line: &mut Line, interrupt: &Interrupt) -> Outcome {
+    /// [`Failure::Tried`] if it is another swimmer's or the robot refuses it, and the link's.
+    pub(super) fn send(&self, line: &mut Line, interrupt: &Interrupt) -> Outcome<u32> {
         if !self.force {
             let configuration = line.robot.configuration()?;
             self.gait
                 .check_swimmer(&configuration, self.file.as_ref())?;
         }
         send(line, &self.gait, interrupt)?;
-        Ok(())
+        Ok(self.gait.table.crc32())
     }
 }
 

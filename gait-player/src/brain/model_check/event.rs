@@ -1,4 +1,4 @@
-//! What can happen to a brain.
+//! Events of the model check.
 
 use crate::{BrainConfig, GaitTable, Transport};
 use link_protocol::*;
@@ -43,12 +43,23 @@ pub(super) enum Event {
     Reset(ResetReason),
 }
 
+/// Filled in with what the robot holds when the request is sent.
+pub(super) const FILLED_IN: Checked = Checked {
+    table_crc32: 0,
+    settings_crc32: 0,
+};
+const OTHER: Checked = Checked {
+    table_crc32: 1,
+    settings_crc32: 1,
+};
+
 pub(super) fn requests() -> Vec<Request> {
     let play = |cycles, detached| {
         Request::Play(Play {
             cycles,
             period_us: 1_000_000,
             detached,
+            checked: FILLED_IN,
         })
     };
     let (a, b) = (table(0.3), table(0.5));
@@ -69,8 +80,7 @@ pub(super) fn requests() -> Vec<Request> {
     let config = BrainConfig::in_tests();
     let servo = config.servos[0];
     std::vec![
-        Request::Arm(Arm { clear_estop: false }),
-        Request::Arm(Arm { clear_estop: true }),
+        Request::Arm,
         play(2, false),
         play(2, true),
         play(0, false),
@@ -116,13 +126,34 @@ pub(super) fn requests() -> Vec<Request> {
                 longest_ns: 1_610_000,
             },
         },
-        Request::ClearEStop,
+        // Of the e-stops that there were, and of one less.
+        Request::ClearEStop { count: 0 },
+        Request::ClearEStop { count: 1 },
         Request::EnterBootLoader,
         Request::Follow(Follow {
             upload: 0,
             cycles: 2,
             period_us: 1_000_000,
+            checked: FILLED_IN,
         }),
+        // Of another table than the robot's.
+        Request::Play(Play {
+            cycles: 2,
+            period_us: 1_000_000,
+            detached: false,
+            checked: OTHER,
+        }),
+        Request::SetServo {
+            joint: Joint::Back,
+            settings: ServoSettings {
+                reversed: true,
+                ..servo
+            },
+        },
+        Request::Trim {
+            joint: Joint::Back,
+            trim: 400,
+        },
     ]
 }
 
@@ -132,13 +163,13 @@ pub(super) fn events(requests: &[Request]) -> Vec<Event> {
         // What could move the robot, stop it or open it, from elsewhere, too late or without leave.
         if matches!(
             request,
-            Request::Arm(_)
+            Request::Arm
                 | Request::Play(_)
                 | Request::Resume
                 | Request::Stop
                 | Request::EStop
                 | Request::SetKey(_)
-                | Request::ClearEStop
+                | Request::ClearEStop { .. }
                 | Request::EnterBootLoader
         ) {
             events.extend([

@@ -1,4 +1,4 @@
-//! What no step may do.
+//! Safety invariants, checked after every transition.
 
 use super::event::Event;
 use super::world::Seen;
@@ -6,7 +6,7 @@ use link_protocol::{Request, ResetReason, StateName};
 
 const OFF: [StateName; 2] = [StateName::Stopped, StateName::EStopped];
 
-/// What no step may do.
+/// Panics if a step violates an invariant.
 pub(super) fn judge(before: StateName, event: Event, requests: &[Request], seen: &Seen) {
     use StateName::{EStopped, Settling, Stopped, Stopping};
     let (all, after) = (&seen.states, *seen.states.last().unwrap());
@@ -18,6 +18,18 @@ pub(super) fn judge(before: StateName, event: Event, requests: &[Request], seen:
         | Event::Elsewhere(index) => Some(&requests[index]),
         _ => None,
     };
+    if let Some(acted) = &seen.acted {
+        let refused = acted.needs.is_some_and(|needs| {
+            needs.signature && !acted.ours
+                || needs.freshness && !acted.attended
+                || needs.presence && !seen.present
+                || !needs.state.includes(acted.state)
+        });
+        assert!(
+            !refused,
+            "{event:?} {asked:?} acted against the table: {acted:?}"
+        );
+    }
     // Nobody talks himself past presence, nor feeds the lease with what is old.
     assert!(
         !seen.opened || seen.present,
@@ -52,14 +64,18 @@ pub(super) fn judge(before: StateName, event: Event, requests: &[Request], seen:
     if seen.armed {
         // Whoever arms is there.
         assert!(seen.fresh, "{}", told());
-        // An e-stop needs its flag.
-        let cleared = matches!(asked, Some(Request::Arm(arm)) if arm.clear_estop);
-        assert!(before != EStopped || cleared, "{}", told());
+        // Arming clears no e-stop.
+        assert!(before != EStopped, "{}", told());
         return;
     }
     match before {
-        // A host of the open session may clear it without arming.
-        EStopped if matches!((event, asked), (Event::Ask(_), Some(Request::ClearEStop))) => {
+        // A fresh host of the open session may clear the e-stops that it names.
+        EStopped
+            if matches!(
+                (event, asked),
+                (Event::Ask(_), Some(Request::ClearEStop { count: 0 }))
+            ) && seen.fresh =>
+        {
             assert!(only(&OFF), "{}", told());
         }
         EStopped => assert!(only(&[EStopped]), "{}", told()),

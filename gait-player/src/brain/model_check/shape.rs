@@ -1,4 +1,4 @@
-//! When two worlds are the same.
+//! Equivalence of worlds.
 
 use super::world::World;
 use crate::TICK_US;
@@ -97,6 +97,11 @@ impl World {
                 window: brain.bench.open(self.now_us),
                 leaving: brain.bench.leaves(u64::MAX),
                 far: brain.settings.configuration.middle_m > 1.5 * brain.built.middle_m,
+                servo: (
+                    brain.settings.servos[1].reversed,
+                    brain.settings.servos[1].trim,
+                    brain.settings.at_bench[1].trim,
+                ),
             }),
             starts: (finer == Finer::Resets)
                 .then_some((brain.starts.runs.min(4), brain.resets.locked_by_starts())),
@@ -185,6 +190,8 @@ struct Present {
     window: bool,
     leaving: bool,
     far: bool,
+    /// Direction, trim, and trim at the bench of the back servo.
+    servo: (bool, i16, i16),
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]

@@ -1,6 +1,6 @@
-//! A brain with all that surrounds it, and what it shows of each event.
+//! A brain with all that surrounds it, and observations of each step.
 
-use super::event::Event;
+use super::event::{Event, FILLED_IN};
 use crate::brain::session::FRESH_US;
 use crate::brain::{Boot, Brain, BrainConfig, Inputs};
 use crate::storage::MemoryStorage;
@@ -33,12 +33,23 @@ pub(super) struct World {
     jumper: bool,
 }
 
-/// What a step showed.
+/// A request that acted, and how it stood with the authority table just before.
+#[derive(Debug)]
+pub(super) struct Acted {
+    pub(super) needs: Option<Needs>,
+    pub(super) ours: bool,
+    pub(super) attended: bool,
+    pub(super) state: StateName,
+}
+
+/// Observations of a step.
 #[derive(Default)]
 #[allow(clippy::struct_excessive_bools)] // facts, not states
 pub(super) struct Seen {
     /// The state after each tick, in order, without repeats.
     pub(super) states: Vec<StateName>,
+    /// A request that was not refused.
+    pub(super) acted: Option<Acted>,
     /// An arm was granted.
     pub(super) armed: bool,
     /// The lease was not empty before.
@@ -87,6 +98,8 @@ impl World {
             present: self.via == Transport::Usb || self.brain.bench.open(self.now_us),
             ..Seen::default()
         };
+        let standing = self.standing(event, requests);
+        let acted_before = self.brain.counted.acted;
         let (fed_before, guarded_before) = (self.brain.session.fed_us, self.guarded());
         match event {
             Event::Ask(index) => {
@@ -172,18 +185,43 @@ impl World {
                 (self.asked, self.seal) = (false, None);
             }
         }
+        let has_acted = self.brain.counted.acted > acted_before;
+        seen.acted = standing.filter(|_| has_acted);
         self.tick(&mut seen);
         seen.opened = self.guarded() > guarded_before && !matches!(event, Event::Reset(_));
         seen.fed = self.brain.session.fed_us != fed_before && self.brain.session.fed_us.is_some();
         seen
     }
 
+    /// How the request of this event stands with the authority table; `None` if it is no request.
+    fn standing(&self, event: Event, requests: &[Request]) -> Option<Acted> {
+        let (index, ours) = match event {
+            Event::Ask(index) => (index, true),
+            Event::Late(index)
+            | Event::Foreign(index)
+            | Event::Unsigned(index)
+            | Event::Elsewhere(index) => (index, false),
+            _ => return None,
+        };
+        let request = &requests[index];
+        let held = self.brain.settings_held();
+        Some(Acted {
+            needs: Some(request.class(|| held.is_widened_by(request)).needs()),
+            ours,
+            attended: self.brain.session.attended(self.now_us),
+            state: self.brain.state.name(),
+        })
+    }
+
     /// How much of what needs presence has happened.
     fn guarded(&self) -> u8 {
         let brain = &self.brain;
         let far = brain.settings.configuration.middle_m > 1.5 * brain.built.middle_m;
+        let servo = &brain.settings.servos[1];
         u8::from(brain.settings.key.is_some())
             + u8::from(far)
+            + u8::from(servo.reversed)
+            + u8::from(servo.trim == 400)
             + u8::from(brain.bench.leaves(u64::MAX))
     }
 
@@ -213,19 +251,30 @@ impl World {
         match &mut request {
             Request::Chunk(chunk) => chunk.upload = self.upload,
             Request::Commit { upload } => *upload = self.upload,
-            Request::Follow(follow) => follow.upload = self.upload,
+            Request::Follow(follow) => {
+                follow.upload = self.upload;
+                follow.checked = Checked {
+                    table_crc32: self.begun,
+                    ..self.brain.held()
+                };
+            }
+            Request::Play(play) if play.checked == FILLED_IN => {
+                play.checked = self.brain.held();
+            }
+            Request::ClearEStop { count } => *count = self.brain.estops.wrapping_sub(*count),
             Request::Begin(begin) => (self.upload, self.begun) = (sequence, begin.crc32),
             _ => {}
         }
-        let arms = matches!(request, Request::Arm(_));
+        let arms = matches!(request, Request::Arm);
         let moves = arms
             || matches!(
                 request,
                 Request::Play(_) | Request::Resume | Request::Follow(_)
             );
         let frame = self.signed(session, sequence, &Message::Request(request));
+        let open = self.brain.session.number();
         let done = self.receive(&frame);
-        if session == self.brain.session.number() && sequence == self.sequence {
+        if session == open && sequence == self.sequence {
             (self.last, self.last_moves) = (frame, moves);
         }
         done && arms

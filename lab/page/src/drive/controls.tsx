@@ -4,7 +4,7 @@ import { computed, effect, signal } from "@preact/signals";
 import { activeGait, edit, shown } from "../explore/document.ts";
 import { asked, swimmer } from "../explore/model.ts";
 import { figure, length } from "../explore/names.ts";
-import { busy, cancelUpload, configuration, foretell, foretold, hello, link, progress, request, said, stop, table, telemetry, upload } from "./robot.ts";
+import { busy, cancelUpload, configuration, foretell, foretold, held, hello, link, progress, request, said, stop, table, telemetry, upload } from "./robot.ts";
 
 /** 0 plays until told otherwise. */
 const cycles = signal(0);
@@ -41,12 +41,12 @@ export function Controls() {
       <div class="bar-of-buttons">
         <button id="upload" onClick={() => gait && upload(gait)} disabled={!gait || busy.value !== ""}>Upload</button>
         {progress.value && <button onClick={cancelUpload}>Break off</button>}
-        <button id="arm" onClick={() => request({ Arm: { clear_estop: false } }, "arm")} disabled={!rest || busy.value !== ""}>Arm</button>
-        <button id="play" class="first" onClick={() => request({ Play: { cycles: cycles.value, period_us: Math.round(period * 1e6), detached: false } }, "play")} disabled={state !== "Holding" || table.value === null}>Play</button>
+        <button id="arm" onClick={() => request("Arm", "arm")} disabled={!rest || busy.value !== ""}>Arm</button>
+        <button id="play" class="first" onClick={() => request({ Play: { cycles: cycles.value, period_us: Math.round(period * 1e6), detached: false, checked: { table_crc32: table.value?.crc32 ?? 0, settings_crc32: held.value?.settings_crc32 ?? 0 } } }, "play")} disabled={state !== "Holding" || table.value === null}>Play</button>
         <button id="pause" onClick={() => request({ Pause: { detached: false } }, "pause")} disabled={state !== "Playing"}>Pause</button>
         <button id="resume" onClick={() => request("Resume", "resume")} disabled={state !== "Paused"}>Resume</button>
         <button id="stop" onClick={stop}>Stop</button>
-        {state === "EStopped" && <button id="clear" onClick={() => request("ClearEStop", "end of the e-stop")}>End the e-stop</button>}
+        {state === "EStopped" && <button id="clear" onClick={() => request({ ClearEStop: { count: held.value?.estops ?? 0 } }, "end of the e-stop")}>End the e-stop</button>}
       </div>
       {progress.value && <progress max={progress.value.total} value={progress.value.done} aria-label="Upload" />}
       <p class={said.value.failed ? "error" : "soft"} role="status" id="said">{busy.value ? `${busy.value} …` : said.value.text}</p>

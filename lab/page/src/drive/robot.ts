@@ -5,7 +5,7 @@ import source from "worker:./worker.ts";
 import { download } from "../files/download.ts";
 import { startWorker } from "../wasm/embedded.ts";
 import { fragment, setFragment } from "../shell/fragment.ts";
-import type { Foretold, Health, Hello, LinkState, News, Order, Request, Stands, TableInfo, Telemetry, WireAsked } from "./words.ts";
+import type { Foretold, Health, Held, Hello, LinkState, News, Order, Request, Stands, TableInfo, Telemetry, WireAsked } from "./words.ts";
 
 export const link = signal<{ state: LinkState; name: string; reason: string }>({ state: "closed", name: "", reason: "" });
 export const wheel = signal<{ yours: boolean; free: boolean } | null>(null);
@@ -15,6 +15,7 @@ export const heardAt = signal(0);
 export const hello = signal<Hello | null>(null);
 export const configuration = signal<object | null>(null);
 export const table = signal<TableInfo | null>(null);
+export const held = signal<Held | null>(null);
 export const health = signal<Health | null>(null);
 export const stands = signal<Stands | null>(null);
 export const progress = signal<{ done: number; total: number } | null>(null);
@@ -72,7 +73,7 @@ function hear(news: News): void {
     case "link":
       link.value = news;
       if (news.state !== "open") busy.value = "";
-      if (news.state === "closed") wheel.value = telemetry.value = hello.value = stands.value = null;
+      if (news.state === "closed") wheel.value = telemetry.value = hello.value = held.value = stands.value = null;
       break;
     case "events":
       for (const event of news.events) if (event.event === "telemetry") take(event.telemetry);
@@ -88,6 +89,9 @@ function hear(news: News): void {
       break;
     case "table":
       table.value = news.table;
+      break;
+    case "held":
+      held.value = news.held;
       break;
     case "progress":
       progress.value = news;
@@ -155,7 +159,7 @@ export function estop(): void {
 
 export function request(request: Request, what: string): void {
   busy.value = what;
-  if (typeof request === "object" || request === "Resume") powered = performance.now();
+  if (typeof request === "object" || request === "Arm" || request === "Resume") powered = performance.now();
   order({ do: "request", request, what });
 }
 

@@ -33,6 +33,16 @@ export interface TableInfo {
   min_period_us: number;
 }
 
+/** What a play and a clear of e-stops must name. */
+export interface Held {
+  settings_crc32: number;
+  estops: number;
+}
+
+export interface Status extends Held {
+  table: TableInfo | null;
+}
+
 export type Reply = string | Record<string, unknown>;
 
 /** What the session tells; tickets are between worker and module. */
@@ -107,6 +117,7 @@ export type News =
   | { told: "done"; what: string; reason: string | null }
   | { told: "hello"; hello: Hello; configuration: object | null }
   | { told: "table"; table: TableInfo | null }
+  | { told: "held"; held: Held }
   | { told: "progress"; done: number; total: number }
   | { told: "health"; health: Health }
   | { told: "stands"; stands: Stands }

@@ -3,7 +3,7 @@
 
 import { Module } from "../wasm/module.ts";
 import { type Ear, open, stepOf, type Wire } from "./wires.ts";
-import type { Event, Foretold, Health, News, Order, Reply, Request } from "./words.ts";
+import type { Event, Foretold, Health, News, Order, Reply, Request, Status } from "./words.ts";
 
 /** The session is looked at at least so often, ms. */
 const BEAT = 20;
@@ -33,7 +33,7 @@ const reasonOf = (error: unknown) => (error instanceof Error ? error.message : S
 
 const GREETING = "connecting";
 const CONFIGURATION = "reading the configuration";
-const TABLE = "reading which gait is there";
+const STATUS = "reading which gait and settings the robot holds";
 
 const ears: Ear = {
   up(name, bytesPerSecond) {
@@ -123,7 +123,12 @@ function step(received: Uint8Array): void {
 }
 
 function hear(event: Event): void {
-  if (event.event === "telemetry") return;
+  if (event.event === "telemetry") {
+    // An e-stop is cleared by its count.
+    if (event.telemetry.state === "EStopped" && state !== "EStopped") request("Status", STATUS);
+    state = event.telemetry.state;
+    return;
+  }
   if (event.event === "progress") {
     tell({ told: "progress", done: event.done, total: event.total });
     return;
@@ -135,7 +140,11 @@ function hear(event: Event): void {
       tell({ told: "link", state: "gone", name: wireName, reason: event.reason });
       // A robot that is switched on later is met then.
       timer = setTimeout(greet, LOOK);
-    } else tell({ told: "done", what, reason: event.reason });
+    } else {
+      tell({ told: "done", what, reason: event.reason });
+      // Another e-stop may have come, or other settings: what the next request names is read anew.
+      if (what !== STATUS) request("Status", STATUS);
+    }
     return;
   }
   if (event.event === "connected") {
@@ -143,20 +152,26 @@ function hear(event: Event): void {
     tell({ told: "hello", hello: event.hello, configuration: null });
     hello = event.hello;
     request("Configuration", CONFIGURATION);
-    request("Table", TABLE);
+    request("Status", STATUS);
     return;
   }
   if (event.event === "uploaded") tell({ told: "table", table: event.table });
   if (event.event === "answered") answered(event.reply);
-  if (what !== CONFIGURATION && what !== TABLE) tell({ told: "done", what, reason: null });
+  if (what !== CONFIGURATION && what !== STATUS) tell({ told: "done", what, reason: null });
 }
 
+/** State of the robot by its last telemetry. */
+let state = "";
 let hello: (Event & { event: "connected" })["hello"];
 
 function answered(reply: Reply): void {
   if (typeof reply !== "object") return;
   if ("Configuration" in reply) tell({ told: "hello", hello, configuration: reply.Configuration as object });
-  if ("Table" in reply) tell({ told: "table", table: (reply.Table ?? null) as News extends { told: "table"; table: infer T } ? T : never });
+  if ("Status" in reply) {
+    const { table, settings_crc32, estops } = reply.Status as Status;
+    tell({ told: "table", table });
+    tell({ told: "held", held: { settings_crc32, estops } });
+  }
 }
 
 function overhear(bytes: Uint8Array): void {

@@ -159,7 +159,7 @@ struct Asked {
     request: Request,
 }
 
-/// Asks something of the robot, in the link's own words (`"Stop"`, `{"Arm": {"clear_estop": false}}`).
+/// Asks something of the robot, in the link's own words (`"Stop"`, `{"ClearEStop": {"count": 1}}`).
 pub(super) fn request(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let Asked {
         number,
