@@ -3,6 +3,7 @@
 use swimmer_files::{ArcKind, Bounds, SwimmerFile};
 
 use crate::arguments::{length, positive_angle};
+use crate::playable::playable;
 
 /// Bounds that hold all round a gait.
 #[derive(Debug, Clone, Copy, clap::Args)]
@@ -38,26 +39,11 @@ struct LinkBounds {
     /// Keep the centre lines of the side links this far apart, in metres; implies --no-overlap
     #[arg(long, value_name = "LENGTH_M", value_parser = length)]
     clearance: Option<f64>,
-    /// Keep within the angle of the swimmer file's servos and the clearance that the robot keeps; other bounds may be tighter.
-    /// How fast the joints turn depends on the period: it is not bounded here, a warning says where 30 s a cycle are too short
+    /// Keep within the angle of the swimmer file's servos and the clearance that the robot keeps, as it plays the gait by its
+    /// table and servos; other bounds may be tighter. The rate of the joints depends on the period: it is not bounded here, a
+    /// warning says if 30 s a cycle are too short
     #[arg(long)]
     playable: bool,
-}
-
-/// How far beyond the robot's own clearance a gait is kept, for the rounding of its table.
-const ROOM: f64 = 1.05;
-
-/// These bounds, and those of the robot of the file.
-pub(crate) fn playable(bounds: Bounds, file: &SwimmerFile) -> Bounds {
-    let largest = file.servo.unwrap_or_default().max_angle;
-    let links = &file.swimmer.links;
-    let margin = f64::from(gait_player::clearance::MARGIN_TURN) * links.front.max(links.back);
-    Bounds {
-        max_angle: Some(bounds.max_angle.map_or(largest, |told| told.min(largest))),
-        no_overlap: true,
-        clearance: bounds.clearance.max(ROOM * margin),
-        ..bounds
-    }
 }
 
 impl LinkBounds {
@@ -130,6 +116,11 @@ impl WholeBounds {
 }
 
 impl QuarterBounds {
+    /// Whether the gait shall be one that the robot plays.
+    pub(crate) fn playable(&self) -> bool {
+        self.links.playable
+    }
+
     /// The bounds for a swimmer.
     pub(crate) fn of(self, file: &SwimmerFile) -> Bounds {
         self.links.tightened(self.into(), file)

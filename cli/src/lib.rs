@@ -23,6 +23,7 @@ mod output;
 mod own_robot;
 mod paper;
 mod picture_file;
+mod playable;
 mod progress;
 mod quantity;
 mod raster;

@@ -304,16 +304,31 @@ impl Forecast {
         played.displacement.norm() / (2.0 * (0.5 * played.rotation.abs()).sin().abs())
     }
 
+    /// Returns why the gait must not be played: the robot's own refusal, or side links that come too close. `None` if it may be
+    /// played.
+    pub fn refusal(&self) -> Option<String> {
+        let refused = self.verdict.refused.clone();
+        refused.or_else(|| self.too_close())
+    }
+
+    /// Returns how close the side links come on the path that the servos take, if that is below the robot's margin. The robot
+    /// checks its table alone, with half of the margin between two evaluations.
+    pub fn too_close(&self) -> Option<String> {
+        (self.gap.distance < self.margin).then(|| {
+            format!(
+                "the side links come within {:.2} mm of each other as the servos play it, below the robot's margin of {:.2} mm (one degree at the tip)",
+                self.gap.distance * 1e3,
+                self.margin * 1e3
+            )
+        })
+    }
+
     /// What to know before the gait is sent.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
         let mm = |length: f64| length * 1e3;
-        if self.gap.distance < self.margin {
-            warnings.push(format!(
-                "the side links come within {:.2} mm of each other, below the robot's margin of {:.2} mm (one degree at the tip)",
-                mm(self.gap.distance),
-                mm(self.margin)
-            ));
+        if let Some(reason) = self.too_close() {
+            warnings.push(reason);
         } else if self.gap.distance < self.thickness {
             warnings.push(format!(
                 "the side links' centre lines come within {:.2} mm, below the plates' thickness of {:.2} mm: they pass only if they lie in different planes",

@@ -28,7 +28,7 @@ use crate::extremal::walls;
 use crate::immobile::{Immobile, refuse_immobile};
 use crate::optimal_gait::OptimalGait;
 use crate::parallel::Watch;
-use crate::problem::{GaitClass, InvalidProblem, tightened, validated};
+use crate::problem::{GaitClass, InvalidProblem, validated};
 use crate::region::Region;
 
 /// Which curves an atlas starts from.
@@ -127,8 +127,7 @@ pub struct Atlas {
     /// Starts that ended on a curve whose polish failed, or whose certificate does.
     pub uncertified: usize,
     /// The best of these, as its curve of low order has it, or of the known gaits that are optimal only among gaits of their
-    /// symmetry, or of displacement the best within an upper bound 0.1 rad tighter, if that is better than every optimum: |d| over
-    /// L, or ξ. It is no gait that anybody proved to be optimal.
+    /// symmetry, if that is better than every optimum: |d| over L, or ξ. It is not proven to be optimal.
     pub best_uncertified: Option<f64>,
 }
 
@@ -209,25 +208,12 @@ pub fn atlas_watched(problem: &AtlasProblem, watch: Watch<'_>) -> Result<Atlas, 
         };
         return Ok(pipeline::run(problem, &model, &asked, watch));
     }
-    let of = |problem: &AtlasProblem| {
-        let asked = displacement::Displacement {
-            problem,
-            model: &model,
-            region: &Region::new(&problem.bounds, &problem.swimmer.links),
-        };
-        pipeline::run(problem, &model, &asked, watch)
+    let asked = displacement::Displacement {
+        problem,
+        model: &model,
+        region: &Region::new(&problem.bounds, &problem.swimmer.links),
     };
-    let mut found = of(problem);
-    // Length has no price: where narrower slits carry farther there is no optimum, but what is one within tighter bounds is a gait.
-    let tighter = tightened(&problem.bounds).and_then(|bounds| {
-        let tighter = of(&AtlasProblem { bounds, ..*problem });
-        Some(tighter.optima.first()?.distance_over_length)
-    });
-    let best = found.optima.first().map(|best| best.distance_over_length);
-    let farther = tighter.filter(|&farther| farther > best.unwrap_or(0.0) * (1.0 + 1e-6));
-    let beyond = found.best_uncertified.into_iter().chain(farther);
-    found.best_uncertified = beyond.reduce(f64::max);
-    Ok(found)
+    Ok(pipeline::run(problem, &model, &asked, watch))
 }
 
 #[cfg(test)]

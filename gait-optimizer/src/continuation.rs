@@ -43,10 +43,10 @@ pub use parameter::Parameter;
 pub enum Start {
     /// The small or large efficiency gait at the first value.
     Efficiency(Branch),
-    /// A gait of most displacement at the first value.
+    /// A gait of most displacement at the first value, run counter-clockwise.
     Displacement {
-        /// Which way; none for the problem's own.
-        heading: Option<Heading>,
+        /// Sense of X.
+        heading: Heading,
         /// 0 for the one that carries farthest, 1 for the next local optimum, and so on.
         rank: usize,
     },

@@ -6,7 +6,6 @@ pub(crate) mod flow;
 mod near;
 mod search;
 mod start_family;
-mod supremum;
 
 use std::fmt;
 
@@ -15,7 +14,6 @@ use best::{best, candidates};
 pub use error::{DisplacementError, Fates};
 pub use near::displacement_near;
 use search::{Candidate, SCAN_POINTS};
-pub use supremum::{Member, Suprema, Supremum};
 use swimmer_files::{Bounds, Objective};
 use swimmer_model::{Model, Swimmer};
 
@@ -53,31 +51,27 @@ impl fmt::Display for Heading {
     }
 }
 
-/// A displacement problem: whose gait, within which bounds, which way.
+/// Inputs of a displacement search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DisplacementProblem {
     /// The swimmer; its side links must be alike.
     pub swimmer: Swimmer<f64>,
     /// Bounds on the joint angles.
     pub bounds: Bounds,
-    /// Which optimum; none for the paper's: forwards with no bound or an upper one, backwards otherwise.
+    /// Sense of X for the counter-clockwise gait. `None` for the farthest gait of either sense, run so that it swims forwards.
     pub heading: Option<Heading>,
     /// Samples of the quarter gait; the cycle has four times as many.
     pub quarter_samples: usize,
-    /// Only gaits whose quarters stay off the diagonals φ₂ = ±φ₁ but for their ends, as the paper's (a) to (c): not those that
-    /// touch their own images there, which are limits of simple curves and may carry farther.
-    pub simple: bool,
 }
 
 impl DisplacementProblem {
-    /// The problem without bounds.
+    /// The problem without bounds, for the farthest gait of either sense.
     pub fn new(swimmer: Swimmer<f64>) -> Self {
         Self {
             swimmer,
             bounds: Bounds::default(),
             heading: None,
             quarter_samples: 192,
-            simple: false,
         }
     }
 
@@ -88,57 +82,11 @@ impl DisplacementProblem {
         self
     }
 
-    fn heading(&self) -> Heading {
-        self.heading
-            .unwrap_or(if self.bounds.min_angle.is_some() || self.bounds.sector {
-                Heading::Backwards
-            } else {
-                Heading::Forwards
-            })
-    }
-
-    /// Whether gaits that touch their own images along a diagonal are to be looked at beside the others. Where nothing bounds
-    /// the angles from above they have no limit.
-    fn may_touch(&self) -> bool {
-        let Bounds {
-            max_angle,
-            sector,
-            no_overlap,
-            ..
-        } = self.bounds;
-        !self.simple && !sector && (max_angle.is_some() || no_overlap)
-    }
-
-    /// Whether slits may carry a gait farther than an optimum, and have a limit.
-    fn may_have_slits(&self) -> bool {
-        let sectored = self.bounds.sector && !self.simple && self.bounds.max_angle.is_some();
-        self.may_touch() || sectored
-    }
-
-    /// The bounds that gaits are looked for within: those that touch their own images keep between the diagonals, and so do all others.
-    fn searched(&self) -> Bounds {
-        if self.may_touch() {
-            self.touching()
-        } else {
-            self.bounds
-        }
-    }
-
-    /// The bounds that a candidate is certified for.
-    fn bounds_of(&self, candidate: &Candidate) -> Bounds {
-        if candidate.quarter.is_simple() {
-            self.bounds
-        } else {
-            self.touching()
-        }
-    }
-
-    /// The bounds that gaits obey which touch their own images.
-    fn touching(&self) -> Bounds {
-        Bounds {
-            sector: true,
-            ..self.bounds
-        }
+    /// For the local optimum of one sense, run counter-clockwise.
+    #[must_use]
+    pub fn heading(mut self, heading: Heading) -> Self {
+        self.heading = Some(heading);
+        self
     }
 
     fn validated(&self) -> Result<Model<f64>, InvalidProblem> {
@@ -146,37 +94,62 @@ impl DisplacementProblem {
     }
 }
 
-/// The gait of most net displacement in the class of closed curves with the paper's two symmetries that are made of singular
-/// arcs and arcs along the bounds.
+/// Returns the simple gait of most net displacement with the paper's two symmetries: a closed curve of singular arcs and arcs
+/// along the bounds.
 ///
-/// Displacement optima are weak, local in shape: small reverse loops would add to X, so the certificate also asks for a
-/// simple curve. With several optima the one with the largest |X| is returned.
+/// With a [`Heading`] it is the farthest local optimum of that sense, run counter-clockwise as in the paper: X < 0 for
+/// [`Heading::Backwards`]. Without one both senses are searched, and the farther gait is returned so that it swims forwards; if
+/// that is the one with X < 0, it runs clockwise, and its [`OptimalGait::arcs`] and [`OptimalGait::start_angle`] still describe
+/// the counter-clockwise quarter.
 ///
-/// A simple curve with these symmetries keeps each quarter between the diagonals φ₂ = ±φ₁. Of such curves the best may not be
-/// among them but a limit of them, which touches its own image along a diagonal (as the paper's gait in the sector does) or
-/// begins in the straight shape. Such a gait, with its `diagonal` arcs, is returned where it carries farther and a bound keeps
-/// the angles from above, unless [`DisplacementProblem::simple`] leaves it out. Its bounds say so: they have the sector.
-///
-/// Shapes that a gait should not go round may lie off all bounds. Then the gaits that carry farthest reach them along a slit,
-/// out and back along itself. Slits along the diagonals are found; others are not, and what is returned may carry less far
-/// than a gait that is no optimum: [`OptimalGait::outdone_over_length`].
-///
-/// A gait that is the best of its symmetry and a saddle among all closed curves is none: it fails its certificate.
+/// Displacement optima are weak, local in shape: small reverse loops would add to X, so the certificate also demands a simple
+/// curve. Each quarter keeps between the diagonals φ₂ = ±φ₁; it runs along them only if [`Bounds::sector`] makes them bounds.
+/// A gait that is optimal among gaits of its symmetry and a saddle among all closed curves fails its certificate.
 ///
 /// # Errors
-/// [`DisplacementError`]: what is wrong with the problem, or why it has no optimum.
+/// [`DisplacementError`]: the invalid input, or the reason why no optimum exists.
 ///
 /// ```
-/// use gait_optimizer::{DisplacementProblem, displacement};
+/// use gait_optimizer::{DisplacementProblem, Heading, displacement};
 /// use swimmer_model::Swimmer;
 ///
-/// let bounded = displacement(&DisplacementProblem::new(Swimmer::robot()).with_max_angle(1.5))?;
-/// let kinds: Vec<_> = bounded.arcs.iter().map(|arc| arc.kind.word()).collect();
-/// assert!(kinds.contains(&"upper"), "{kinds:?}");
+/// let bounded = DisplacementProblem::new(Swimmer::purcell()).with_max_angle(2.4);
+/// let papers = displacement(&bounded.heading(Heading::Backwards))?;
+/// let farthest = displacement(&bounded)?;
+/// assert!(papers.displacement < 0.0 && !papers.is_clockwise());
+/// assert!((farthest.displacement + papers.displacement).abs() < 1e-12 && farthest.is_clockwise());
 /// # Ok::<(), gait_optimizer::DisplacementError>(())
 /// ```
 pub fn displacement(problem: &DisplacementProblem) -> Result<OptimalGait, DisplacementError> {
-    let gait = best_symmetric(problem)?;
+    let optimum = |heading| no_saddle(best_symmetric(problem, heading)?);
+    match problem.heading {
+        Some(heading) => optimum(heading),
+        None => farther(optimum(Heading::Forwards), optimum(Heading::Backwards)),
+    }
+}
+
+/// The farther of two gaits, swum forwards; the reason if neither exists.
+fn farther(
+    forwards: Result<OptimalGait, DisplacementError>,
+    backwards: Result<OptimalGait, DisplacementError>,
+) -> Result<OptimalGait, DisplacementError> {
+    let is_farther = |there: &OptimalGait, here: &OptimalGait| {
+        there.displacement.abs() > here.displacement.abs() * (1.0 + ALIKE)
+    };
+    match (forwards, backwards) {
+        (Ok(forwards), Ok(backwards)) if is_farther(&backwards, &forwards) => {
+            Ok(backwards.swum_forwards())
+        }
+        (Ok(forwards), _) => Ok(forwards),
+        (Err(_), Ok(backwards)) => Ok(backwards.swum_forwards()),
+        (Err(forwards), Err(backwards)) => Err(forwards.or_backwards(backwards)),
+    }
+}
+
+/// Relative difference below which two gaits carry equally far.
+const ALIKE: f64 = 1e-9;
+
+fn no_saddle(gait: OptimalGait) -> Result<OptimalGait, DisplacementError> {
     if gait.certificate.pass() {
         Ok(gait)
     } else {
@@ -185,42 +158,26 @@ pub fn displacement(problem: &DisplacementProblem) -> Result<OptimalGait, Displa
     }
 }
 
-/// The same, be it a saddle among all closed curves.
+/// The best gait of one sense among those with the paper's symmetries, even if it is a saddle among all closed curves.
 pub(crate) fn best_symmetric(
     problem: &DisplacementProblem,
+    heading: Heading,
 ) -> Result<OptimalGait, DisplacementError> {
     let model = problem.validated()?;
     refuse_immobile(&model, &problem.bounds)?;
-    let links = &problem.swimmer.links;
-    let bounds = problem.searched();
-    let region = Region::new(&bounds, links);
-    let (mut answer, seen) = best(problem, &model, (&bounds, &region));
-    if problem.may_touch() {
-        let carries = answer
-            .as_ref()
-            .map_or(0.0, |gait| gait.displacement_over_length.abs());
-        let farthest = seen.farthest(carries * (1.0 + OUTDONE));
-        let farthest = farthest.map(|(_, far)| far);
-        match &mut answer {
-            Ok(gait) => gait.outdone_over_length = farthest,
-            Err(DisplacementError::NoOptimum { outdone, .. }) => *outdone = farthest,
-            Err(_) => {}
-        }
-    }
-    answer
+    let region = Region::new(&problem.bounds, &problem.swimmer.links);
+    best(problem, heading, &model, &region)
 }
 
-/// How much farther, relatively, a gait that is no optimum must carry to be told of.
-const OUTDONE: f64 = 1e-6;
-
-/// Every gait that the search finds, farthest first: also those that fail their certificate, and those that touch their own
-/// images where [`displacement()`] would look for them.
-pub(crate) fn every(problem: &DisplacementProblem) -> Result<Vec<OptimalGait>, DisplacementError> {
+/// Every gait of one sense that the search finds, farthest first, including those that fail their certificate.
+pub(crate) fn every(
+    problem: &DisplacementProblem,
+    heading: Heading,
+) -> Result<Vec<OptimalGait>, DisplacementError> {
     let model = problem.validated()?;
     refuse_immobile(&model, &problem.bounds)?;
-    let bounds = problem.searched();
-    let region = Region::new(&bounds, &problem.swimmer.links);
-    let found = candidates(problem, &model, (&bounds, &region), SCAN_POINTS).found;
+    let region = Region::new(&problem.bounds, &problem.swimmer.links);
+    let (found, _) = candidates(&problem.bounds, heading, &model, &region, SCAN_POINTS);
     let gaits = found
         .iter()
         .filter_map(|candidate| certified(problem, &model, candidate));
@@ -229,16 +186,15 @@ pub(crate) fn every(problem: &DisplacementProblem) -> Result<Vec<OptimalGait>, D
     Ok(gaits)
 }
 
-/// A candidate as a full cycle with its certificate; none where it cannot even be traced.
+/// A candidate as a full cycle with its certificate; `None` if it cannot be traced.
 fn certified(
     problem: &DisplacementProblem,
     model: &Model<f64>,
     candidate: &Candidate,
 ) -> Option<OptimalGait> {
-    let bounds = problem.bounds_of(candidate);
-    // The arcs know this closer than the samples do.
+    // The arcs know this more accurately than the samples do.
     let displacement_over_length = 4.0 * candidate.quarter.end[2];
-    let of = (Objective::Displacement, &problem.swimmer, &bounds);
+    let of = (Objective::Displacement, &problem.swimmer, &problem.bounds);
     let mut gait = decided(problem.quarter_samples, |samples| {
         let cycle = candidate.cycle(model, samples)?;
         let stroke = cycle.swum(model)?;
@@ -248,7 +204,7 @@ fn certified(
             ..OptimalGait::of_cycle(of, true, cycle, &stroke)
         })
     })?;
-    // What the arcs say of themselves.
+    // Conditions that only the arcs provide.
     let lambda4 = candidate.momentum.at(&pose(&candidate.quarter.end)).z;
     let again = displacement_over_length - gait.swum.x;
     let tolerance = again_within(gait.swum.x.abs());

@@ -106,8 +106,7 @@ pub use continuation::{
 };
 pub use cycle::Arc;
 pub use displacement::{
-    DisplacementError, DisplacementProblem, Fates, Heading, Member, Suprema, Supremum,
-    displacement, displacement_near,
+    DisplacementError, DisplacementProblem, Fates, Heading, displacement, displacement_near,
 };
 pub use efficiency::{
     Branch, Direct, EfficiencyError, EfficiencyProblem, EfficiencySeed, Method, Reached,

@@ -4,8 +4,9 @@ use nalgebra::Vector2;
 use swimmer_files::{AnyGait, Bounds, GaitArc, GaitFile, Objective, SwimmerHash};
 use swimmer_model::{InvalidSamples, Model, Stroke, Swimmer, Tolerance, trajectory, wrapped_angle};
 
-use crate::certificate::Certificate;
+use crate::certificate::{Certificate, double_area};
 use crate::cycle::{Arc, Cycle};
+use crate::displacement::Heading;
 
 /// Numbers that only an efficiency gait has.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,11 +42,12 @@ pub struct OptimalGait {
     pub efficiency: f64,
     /// Whether the gait has the paper's two symmetries, so that a quarter of it tells the whole.
     pub symmetric: bool,
-    /// φ₁ at the first sample \[rad\]; there φ₁ = φ₂ where the gait is symmetric.
+    /// φ₁ at the first sample \[rad\]; φ₁ = φ₂ there if the gait is symmetric.
     pub start_angle: f64,
-    /// φ₂ a quarter of the cycle later \[rad\]; there φ₂ = −φ₁ where the gait is symmetric.
+    /// φ₂ at the end of the first quarter \[rad\]; φ₂ = −φ₁ there if the gait is symmetric.
     pub end_angle: f64,
-    /// The arcs in order: of the quarter where the gait is symmetric, else of the cycle.
+    /// The arcs in order: of the quarter if the gait is symmetric, of the cycle otherwise. Of a clockwise displacement gait, as
+    /// `start_angle` and `end_angle`, of the quarter that is run counter-clockwise.
     pub arcs: Vec<Arc>,
     /// Share of the cycle, as timed at constant power, with crossing links.
     pub links_cross: f64,
@@ -53,9 +55,6 @@ pub struct OptimalGait {
     pub certificate: Certificate,
     /// What only efficiency gaits have.
     pub efficiency_figures: Option<EfficiencyFigures>,
-    /// X over L of a gait within the same bounds that carries farther, but is no extremal, and so no optimum: none where the
-    /// search saw no such gait. Then the largest displacement belongs to a kind of gait that the search does not know.
-    pub outdone_over_length: Option<f64>,
     /// How many extremals the search found in its class, this one included, of which it returned the best that is certified;
     /// none where a solver follows a single one.
     pub extremals: Option<usize>,
@@ -92,7 +91,6 @@ impl OptimalGait {
             links_cross: model.map_or(f64::NAN, |model| cycle.links_cross(&model)),
             certificate: Certificate::new(Vec::new()),
             efficiency_figures: None,
-            outdone_over_length: None,
             extremals: None,
             cycle,
             swum: over_length,
@@ -135,6 +133,35 @@ impl OptimalGait {
         self.start_angle = -self.start_angle;
         self.end_angle = -self.end_angle;
         self
+    }
+
+    /// The same curve run backwards if it swims backwards. A displacement gait with X < 0 becomes a clockwise one with X > 0; its
+    /// arcs stay those of the counter-clockwise quarter.
+    #[must_use]
+    pub(crate) fn swum_forwards(mut self) -> Self {
+        if self.displacement_over_length < 0.0 {
+            self.cycle = self.cycle.reversed(|phi| *phi);
+            self.displacement_over_length = -self.displacement_over_length;
+            self.displacement = -self.displacement;
+            self.lateral_over_length = -self.lateral_over_length;
+            self.rotation = -self.rotation;
+            self.swum = -self.swum;
+        }
+        self
+    }
+
+    /// Whether the curve runs clockwise in the plane of (φ₁, φ₂).
+    pub fn is_clockwise(&self) -> bool {
+        double_area(self.phi()) < 0.0
+    }
+
+    /// The sense of X if the curve is run counter-clockwise.
+    pub(crate) fn heading_counter_clockwise(&self) -> Heading {
+        if (self.displacement_over_length < 0.0) == self.is_clockwise() {
+            Heading::Forwards
+        } else {
+            Heading::Backwards
+        }
     }
 
     /// Fractions of the period of the samples, 0 to 1, at constant power.

@@ -1,23 +1,11 @@
-//! What every problem has to be before anything is searched: a swimmer, and bounds that make sense for the class of gaits.
+//! Validation shared by all searches: the swimmer, and bounds that suit the class of gaits.
 
 use swimmer_files::Bounds;
 use swimmer_model::{InvalidSwimmer, Links, Model, Swimmer};
 
 use crate::region::Region;
 
-/// The same bounds with the largest angle 0.1 rad smaller, whose gaits are gaits of these; none where no angle is bounded from
-/// above or that leaves no room.
-pub(crate) fn tightened(bounds: &Bounds) -> Option<Bounds> {
-    /// \[rad\]
-    const BY: f64 = 0.1;
-    let smaller = bounds.max_angle? - BY;
-    (smaller > bounds.min_angle.unwrap_or(0.0)).then_some(Bounds {
-        max_angle: Some(smaller),
-        ..*bounds
-    })
-}
-
-/// Why a problem makes no sense.
+/// Invalid input of an optimisation problem.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum InvalidProblem {
     /// The swimmer's parameters are out of range.

@@ -43,7 +43,7 @@ use swimmer_model::Swimmer;
 
 use crate::certificate::{Certificate, Condition};
 use crate::cycle::Cycle;
-use crate::displacement::{DisplacementProblem, displacement};
+use crate::displacement::{DisplacementProblem, Heading, displacement};
 use crate::efficiency::Branch;
 use crate::immobile::refuse_immobile;
 use crate::member::Member;
@@ -75,6 +75,16 @@ pub struct Values {
     pub worst: f64,
     /// In the mean.
     pub mean: f64,
+}
+
+impl Values {
+    /// The value that a design maximises.
+    fn of(&self, over: Over) -> f64 {
+        match over {
+            Over::Worst => self.worst,
+            Over::Mean => self.mean,
+        }
+    }
 }
 
 /// A swimmer that holds the worst case.
@@ -162,8 +172,9 @@ impl Robustness {
     }
 }
 
-/// The gait whose displacement, in the worst case or in the mean over the uncertainty, is the most, free or under an upper
-/// bound. r_s and χ of the problem's swimmer give way to the estimates.
+/// Returns the gait of most displacement, in the worst case or in the mean over the uncertainty, free or under an upper bound. r_s
+/// and χ of the problem's swimmer give way to the estimates. Without a heading in the problem, the farther of both senses, swum
+/// forwards.
 ///
 /// # Errors
 /// [`RobustError`]: why there is none.
@@ -186,11 +197,41 @@ pub fn robust_displacement(
     uncertainty: &Uncertainty,
     over: Over,
 ) -> Result<RobustGait, RobustError> {
-    // Corners of a gait that touches its own images move with every swimmer of the ensemble.
-    let problem = &DisplacementProblem {
-        simple: true,
-        ..*problem
+    let of_sense = |heading| robust_of_sense(&problem.heading(heading), uncertainty, over);
+    let Some(heading) = problem.heading else {
+        let both = [Heading::Forwards, Heading::Backwards].map(of_sense);
+        return farther(both, over);
     };
+    of_sense(heading)
+}
+
+/// The farther of two robust gaits, swum forwards; the reason if neither exists.
+fn farther(
+    [forwards, backwards]: [Result<RobustGait, RobustError>; 2],
+    over: Over,
+) -> Result<RobustGait, RobustError> {
+    let carried = |found: &RobustGait| found.robustness.values.of(over);
+    let found = match (forwards, backwards) {
+        (Ok(forwards), Ok(backwards)) if carried(&backwards) > carried(&forwards) => backwards,
+        (Ok(forwards), _) => forwards,
+        (Err(_), Ok(backwards)) => backwards,
+        (Err(RobustError::Nominal(forwards)), Err(RobustError::Nominal(backwards))) => {
+            return Err(forwards.or_backwards(backwards).into());
+        }
+        (Err(RobustError::Nominal(_)), Err(closer)) | (Err(closer), _) => return Err(closer),
+    };
+    Ok(RobustGait {
+        gait: found.gait.swum_forwards(),
+        ..found
+    })
+}
+
+/// The robust gait of the problem's heading, run counter-clockwise.
+fn robust_of_sense(
+    problem: &DisplacementProblem,
+    uncertainty: &Uncertainty,
+    over: Over,
+) -> Result<RobustGait, RobustError> {
     let ensemble = Ensemble::new(&problem.swimmer, &problem.bounds, uncertainty)?;
     let of = |swimmer| {
         displacement(&DisplacementProblem {

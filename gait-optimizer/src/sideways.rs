@@ -7,11 +7,8 @@
 //! by X times the θ row of the curvature. Both vanish on free arcs, so a loop that is stationary together with such a start
 //! has it on a bound – where the heading is stationary along it, or in a corner of the bounds.
 //!
-//! A bridge – a way out to a start with the heading square to d and back along itself – costs nothing, so the supremum over
-//! all curves is the largest |d| wherever a bridge can turn that far ([`Sideways::bridged_supremum_over_length`]), where there is a
-//! largest one: gaits that touch their own image carry farther than any loop, and are no maximum. As with
-//! the gait that turns most, bridges do not count here: the start is a point of the loop itself. What is compared are the
-//! loops of most displacement, each with its best start, and the loops that are stationary with a start on a straight bound.
+//! The start is a point of the simple loop itself. The candidates are the loops of most displacement, each with its best start,
+//! and the loops that are stationary with a start on a straight bound.
 
 mod error;
 mod on_bound;
@@ -26,7 +23,6 @@ use crate::atlas::{AtlasProblem, atlas_watched};
 use crate::certificate::Verdict;
 use crate::certify::certified;
 use crate::cycle::Cycle;
-use crate::displacement::{DisplacementError, DisplacementProblem, Heading, displacement};
 use crate::optimal_gait::OptimalGait;
 use crate::parallel::Watch;
 use crate::problem::{GaitClass, validated};
@@ -68,11 +64,6 @@ pub struct Sideways {
     pub gait: OptimalGait,
     /// Y over L: net displacement across the heading at the first sample, to the left.
     pub lateral_over_length: f64,
-    /// The largest |d| over L: what a bridge to a start with its heading square to d would come near to. None where a gait is known
-    /// that carries farther than every optimum, and so no largest one.
-    pub bridged_supremum_over_length: Option<f64>,
-    /// Y over L of a known gait that moves farther across than this one and is no optimum of its class: it touches its own image.
-    pub outdone_over_length: Option<f64>,
     /// Loops that were found, of which this is the best.
     pub loops: usize,
 }
@@ -81,10 +72,9 @@ pub struct Sideways {
 /// those that are found and certified. Random starts know no front and back, so a swimmer whose side links differ is looked
 /// at from both ends.
 ///
-/// A loop with a bridge to its start is not simple, so there need not be a farthest one, and the answer can fall as a bound
-/// B is widened: from the corner (B, −B) of Purcell's swimmer an extremal runs along the bound at 1.005 rad and none does at
-/// 1.01, where the next best loop carries .026 L and that one carried .034. What bridges would bring is
-/// [`Sideways::bridged_supremum_over_length`]. Somebody may watch.
+/// There need not be a farthest simple loop, so the answer can fall as a bound B is widened: from the corner (B, −B) of Purcell's
+/// swimmer an extremal runs along the bound at 1.005 rad and none does at 1.01, where the next best loop carries .026 L and that
+/// one carried .034. `watch` receives the progress.
 ///
 /// # Errors
 /// [`SidewaysError`]: what is wrong with the problem, or that there is no such gait.
@@ -116,12 +106,9 @@ pub fn sideways(problem: &SidewaysProblem, watch: Watch<'_>) -> Result<Sideways,
         .and_then(|found| from_the_other_end(problem, &found));
     match (ours, theirs) {
         (Ok(ours), Some(theirs)) => {
-            let bridged = ours.bridged_supremum_over_length;
-            let both = bridged.zip(theirs.bridged_supremum_over_length);
             let loops = ours.loops + theirs.loops;
             let is_theirs = theirs.lateral_over_length > ours.lateral_over_length;
             Ok(Sideways {
-                bridged_supremum_over_length: both.map(|(ours, theirs)| ours.max(theirs)),
                 loops,
                 ..if is_theirs { theirs } else { ours }
             })
@@ -207,22 +194,7 @@ fn sampled_as_asked(
         };
         return Ok((Err(none), open));
     };
-    let farthest = loops.optima.first().map(|best| best.distance_over_length);
-    let touching = touching(problem);
     let best = Sideways {
-        bridged_supremum_over_length: farthest.map(|farthest| farthest.max(across(&best))).filter(
-            |farthest| {
-                let beyond = touching.iter().map(|(_, known)| *known);
-                let beyond = beyond.chain(loops.best_uncertified);
-                beyond.fold(0.0, f64::max) <= farthest + 1e-9
-            },
-        ),
-        outdone_over_length: touching
-            .iter()
-            .filter_map(|(gait, _)| turned(problem, &model, gait.as_ref()?))
-            .map(|found| across(&found))
-            .filter(|known| *known > across(&best) + 1e-9)
-            .reduce(f64::max),
         lateral_over_length: across(&best),
         gait: if best.lateral_over_length < 0.0 {
             best.mirrored()
@@ -232,39 +204,6 @@ fn sampled_as_asked(
         loops: count,
     };
     Ok((Ok(best), open))
-}
-
-/// The gaits of most displacement with the paper's symmetries, which may touch their own images, and how far over L gaits are known
-/// to carry of which they are the best certified ones. Empty where the side links differ.
-fn touching(problem: &SidewaysProblem) -> Vec<(Option<OptimalGait>, f64)> {
-    let asked = |heading| {
-        displacement(&DisplacementProblem {
-            bounds: problem.bounds,
-            heading: Some(heading),
-            ..DisplacementProblem::new(problem.swimmer)
-        })
-    };
-    let known = |answer| match answer {
-        Ok(gait) => {
-            let OptimalGait {
-                displacement_over_length: d,
-                outdone_over_length: outdone,
-                ..
-            } = gait;
-            Some((Some(gait), d.abs().max(outdone.unwrap_or(0.0).abs())))
-        }
-        Err(DisplacementError::NoOptimum {
-            outdone: Some(far), ..
-        }) => Some((None, far.abs())),
-        Err(DisplacementError::Saddle { gait }) => {
-            Some((None, gait.displacement_over_length.abs()))
-        }
-        Err(_) => None,
-    };
-    [Heading::Forwards, Heading::Backwards]
-        .into_iter()
-        .filter_map(|heading| known(asked(heading)))
-        .collect()
 }
 
 #[cfg(test)]

@@ -123,7 +123,7 @@ fn bumped(file: &GaitFile, centre: f64) -> GaitFile {
 #[test]
 fn every_optimum_passes_and_with_a_bump_fails() {
     let gaits = gaits();
-    assert!(gaits.len() > 40, "{}", gaits.len());
+    assert!(gaits.len() >= 38, "{}", gaits.len());
     for (name, swimmer, file) in gaits.into_iter().chain(more_gaits()) {
         let certificate = |file: &GaitFile| certificate(&swimmer, file);
         let passes = |what: &str, file: &GaitFile| {

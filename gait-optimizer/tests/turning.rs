@@ -54,9 +54,32 @@ fn purcell_and_robot() {
     assert!(shapes.all(|phi| phi.amax() <= 2.8 + 1e-12));
 }
 
-/// The curvature of θ where it is positive, summed over the nodes of a grid.
+/// Largest sum over the connected cells of a square grid with positive values.
+fn largest_island(cells: &[f64], count: usize) -> f64 {
+    let mut seen = vec![false; cells.len()];
+    let mut largest = 0.0;
+    for first in 0..cells.len() {
+        let (mut open, mut sum) = (vec![first], 0.0);
+        while let Some(cell) = open.pop() {
+            if seen[cell] || cells[cell] <= 0.0 {
+                continue;
+            }
+            seen[cell] = true;
+            sum += cells[cell];
+            let (i, j) = (cell / count, cell % count);
+            let below = [(i > 0, count), (j > 0, 1)];
+            let above = [(i + 1 < count, count), (j + 1 < count, 1)];
+            open.extend(below.iter().filter(|next| next.0).map(|next| cell - next.1));
+            open.extend(above.iter().filter(|next| next.0).map(|next| cell + next.1));
+        }
+        largest = f64::max(largest, sum);
+    }
+    largest
+}
+
+/// The curvature of θ where it is positive, summed over the nodes of a grid: the gait turns as much as the largest connected region.
 #[test]
-fn the_supremum_by_brute_force() {
+fn the_largest_region_by_brute_force() {
     for (swimmer, bounds) in [
         (Swimmer::purcell(), Bounds::within(2.3)),
         (Swimmer::robot(), Bounds::within(2.8)),
@@ -66,28 +89,27 @@ fn the_supremum_by_brute_force() {
         let turning = found(swimmer, bounds);
         let model = Model::new(&swimmer).unwrap();
         let max = bounds.max_angle.unwrap();
-        let count = 600;
+        let count = 600_u32;
         let cell = 2.0 * max / f64::from(count);
-        let mut sum = 0.0;
-        for i in 0..count {
-            for j in 0..count {
-                let middle = |k: i32| -max + (f64::from(k) + 0.5) * cell;
-                let phi = Vector2::new(middle(i), middle(j));
-                if !(bounds.no_overlap && swimmer.links.cross(&phi)) {
-                    let height = model.first_derivatives(&phi).curvature().z;
-                    sum += height.max(0.0) * cell * cell;
-                }
+        let middle = |k: u32| -max + (f64::from(k) + 0.5) * cell;
+        let shapes = (0..count).flat_map(|i| (0..count).map(move |j| (i, j)));
+        let shapes = shapes.map(|(i, j)| Vector2::new(middle(i), middle(j)));
+        let height = |phi: Vector2<f64>| {
+            if bounds.no_overlap && swimmer.links.cross(&phi) {
+                return 0.0;
             }
-        }
-        let off = (turning.bridged_supremum - sum).abs() / sum;
-        // A cell cut by the bound of crossing links counts whole or not at all.
-        let tolerance = if bounds.no_overlap { 2e-3 } else { 2e-5 };
-        assert!(
-            off < tolerance,
-            "{bounds}: {} {sum}",
-            turning.bridged_supremum
+            model.first_derivatives(&phi).curvature().z * cell * cell
+        };
+        let cells: Vec<f64> = shapes.map(height).collect();
+        let largest = largest_island(&cells, count as usize);
+        let off = turning.gait.rotation / largest - 1.0;
+        println!(
+            "{bounds}: {off:e} off {largest} rad, {} regions",
+            turning.regions
         );
-        assert!(turning.gait.rotation < turning.bridged_supremum + 1e-12);
+        // A cell cut by the bound of crossing links counts whole or not at all.
+        let tolerance = if bounds.no_overlap { 2e-3 } else { 1e-4 };
+        assert!(off.abs() < tolerance, "{bounds}: {off}");
     }
 }
 
@@ -253,7 +275,6 @@ fn all_kinds_of_swimmers_get_a_gait_or_a_reason() {
                 gaits += 1;
                 let gait = &turning.gait;
                 assert!(gait.certificate.pass() && gait.rotation > 0.0);
-                assert!(gait.rotation <= turning.bridged_supremum + 1e-9);
                 assert!(gait.phi().iter().all(|phi| phi.amax() <= max_angle + 1e-9));
             }
             Err(error) => println!("{swimmer:?} {bounds}: {error}"),

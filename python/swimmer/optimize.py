@@ -24,15 +24,16 @@ def displacement(
     clearance: float | None = None,
     playable: bool = False,
     sign: Literal["+", "-"] | None = None,
-    simple: bool = False,
     robust: Result | Text | None = None,
     gain: Sequence[float] | None = None,
     over: Literal["worst", "mean"] | None = None,
     max_rate: Angle | None = None,
     period: float | None = None,
 ) -> OptimalGait:
-    """The gait of most net displacement of the doubly symmetric class: `displacement_over_length`, `start_angle_rad`, `arcs`, …
+    """The simple gait of most net displacement of the doubly symmetric class: `displacement_over_length`, `start_angle_rad`, `arcs`, …
 
+    Without `sign` the farthest of either sense, oriented so that it swims forwards; if it is `clockwise`, its arcs are those of the
+    counter-clockwise quarter. With `sign` the local optimum whose counter-clockwise run has that sign of X, as in the paper.
     `clearance` in metres, `max_rate` an angle a second, `period` in seconds; `robust` a `Calibration` or its fit.json, `gain`
     the least and the most that servos turn over what they are told.
     """
@@ -67,7 +68,7 @@ def turning(
     clearance: float | None = None,
     playable: bool = False,
 ) -> OptimalGait:
-    """The simple closed gait of most net rotation: `rotation_rad`, `bridged_supremum_rad`, …"""
+    """The simple closed gait of most net rotation: `rotation_rad`, `regions`, …"""
     return _optimal("turning", swimmer, locals())
 
 

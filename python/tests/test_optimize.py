@@ -88,15 +88,14 @@ def test_answers_are_those_of_the_command(purcell: sw.Swimmer, words: list[str])
     }
 
 
-def test_what_has_no_optimum_says_so(purcell: sw.Swimmer) -> None:
-    with pytest.warns(sw.Doubt, match="no gait within these bounds carries farthest.*optimize speed"):
-        limit = sw.optimize.displacement(purcell, max_angle=2.8)
-    told = limit.to_dict()
-    assert told["exists"] is False
-    nearest = told["best_member"]["displacement_over_length"]
-    assert told["local_optimum"]["displacement_over_length"] < nearest < told["supremum_over_length"]
-    assert sw.simulate(purcell, limit.gait).displacement_over_length == pytest.approx(nearest, rel=1e-9)
-    assert sw.optimize.displacement(purcell, max_angle=2.8, simple=True).displacement_over_length > 0.1
+def test_without_a_sign_the_farthest_gait_swims_forwards(purcell: sw.Swimmer) -> None:
+    senses = {sign: sw.optimize.displacement(purcell, max_angle=2.8, sign=sign) for sign in ("+", "-")}
+    farthest = sw.optimize.displacement(purcell, max_angle=2.8)
+    assert farthest.displacement_over_length == -senses["-"].displacement_over_length > senses["+"].displacement_over_length > 0.1
+    assert farthest.to_dict()["clockwise"] is True and senses["-"].to_dict()["clockwise"] is False
+    assert farthest.arcs == senses["-"].arcs
+    swum = sw.simulate(purcell, farthest.gait)
+    assert swum.displacement_over_length == pytest.approx(farthest.displacement_over_length, rel=1e-9)
 
 
 def test_the_gait_file_is_the_commands(farthest: sw.OptimalGait, tmp_path: Path) -> None:

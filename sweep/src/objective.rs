@@ -6,7 +6,6 @@ use gait_optimizer::{
     efficiency, sideways, turning,
 };
 use serde::{Deserialize, Serialize};
-use swimmer_files::ArcKind;
 
 use crate::field::Design;
 use crate::row::Row;
@@ -15,7 +14,7 @@ use crate::row::Row;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Aim {
-    /// Most net displacement, of gaits with the paper's two symmetries.
+    /// Most net displacement, of simple gaits with the paper's two symmetries, either sense.
     Displacement,
     /// Most Lighthill efficiency: the small gait.
     EfficiencySmall,
@@ -146,7 +145,7 @@ const QUARTER: usize = 64;
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Missing {
     pub(crate) reason: String,
-    /// What a gait that is no proven optimum is known to come to: one that comes to less is not the best.
+    /// Value of a gait that was found but fails its certificate: a gait with a lower value is not the best.
     pub(crate) outdone: Option<f64>,
 }
 
@@ -164,7 +163,6 @@ impl From<DisplacementError> for Missing {
         Self {
             reason: error.to_string(),
             outdone: match error {
-                DisplacementError::NoOptimum { outdone, .. } => outdone.map(f64::abs),
                 DisplacementError::NotCertified {
                     displacement_over_length,
                     ..
@@ -201,9 +199,6 @@ impl Solver {
         DisplacementProblem {
             bounds: design.bounds,
             quarter_samples: QUARTER,
-            // Limits that touch their own images cannot be followed: they are searched where there is no simple gait, or one
-            // that a bound cuts off.
-            simple: true,
             ..DisplacementProblem::new(design.swimmer)
         }
     }
@@ -261,29 +256,12 @@ impl Solver {
     }
 }
 
-/// Whether a quarter ends along a bound.
-fn cut_off(gait: &OptimalGait) -> bool {
-    let last = gait.arcs.last();
-    last.is_none_or(|arc| arc.kind != ArcKind::Singular)
-}
-
 impl Solve for Solver {
     fn cold(&self, design: &Design, key: u64) -> Answer {
         let of_gait =
             |gait: OptimalGait| Self::solved(design, key, false, Held::Gait(Box::new(gait)));
         match design.aim {
             Aim::Displacement => displacement(&Self::of_displacement(design))
-                .ok()
-                .filter(|gait| !cut_off(gait))
-                .map_or_else(
-                    || {
-                        displacement(&DisplacementProblem {
-                            simple: false,
-                            ..Self::of_displacement(design)
-                        })
-                    },
-                    Ok,
-                )
                 .map(of_gait)
                 .map_err(Missing::from),
             Aim::EfficiencySmall | Aim::EfficiencyLarge => efficiency(&Self::of_efficiency(design))
@@ -318,7 +296,7 @@ impl Solve for Solver {
         let held = match (&near.held, design.aim) {
             (Held::Gait(gait), Aim::Displacement) => {
                 let next = displacement_near(&Self::of_displacement(design), gait)?;
-                Held::Gait(Box::new(Some(next).filter(|gait| !cut_off(gait))?))
+                Held::Gait(Box::new(next))
             }
             (Held::Seed(seed), Aim::EfficiencySmall | Aim::EfficiencyLarge) => {
                 Held::Seed(Box::new(seed.near(&Self::of_efficiency(design))?))

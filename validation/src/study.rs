@@ -2,8 +2,8 @@
 
 use gait_optimizer::{
     BestAmplitude, Bounds, Branch, DisplacementError, DisplacementProblem, EfficiencyProblem,
-    HeightMap, HeightMapError, Objective, OptimalGait, SimpleShape, best_amplitudes, displacement,
-    efficiency,
+    Heading, HeightMap, HeightMapError, Objective, OptimalGait, SimpleShape, best_amplitudes,
+    displacement, efficiency,
 };
 use swimmer_model::{InvalidSwimmer, Model, Stroke, Swimmer};
 
@@ -103,20 +103,22 @@ impl Study {
             Model::new(&robot)?,
             Model::new(&slender)?,
         );
-        let bounded = |min_angle, sector| DisplacementProblem {
-            bounds: Bounds {
-                max_angle: Some(UPPER),
-                min_angle,
-                sector,
-                ..Bounds::default()
-            },
-            simple: true,
-            ..DisplacementProblem::new(robot)
+        let bounded = |min_angle, sector, heading| {
+            displacement(&DisplacementProblem {
+                bounds: Bounds {
+                    max_angle: Some(UPPER),
+                    min_angle,
+                    sector,
+                    ..Bounds::default()
+                },
+                heading: Some(heading),
+                ..DisplacementProblem::new(robot)
+            })
         };
         let robot_displacement = [
-            found(displacement(&bounded(None, false)), "gait (b)")?,
-            found(displacement(&bounded(Some(LOWER), false)), "gait (c)")?,
-            found(displacement(&bounded(None, true)), "gait (d)")?,
+            found(bounded(None, false, Heading::Forwards), "gait (b)")?,
+            found(bounded(Some(LOWER), false, Heading::Backwards), "gait (c)")?,
+            found(bounded(None, true, Heading::Backwards), "gait (d)")?,
         ];
         let robot_unbounded = match displacement(&DisplacementProblem::new(robot)) {
             Ok(_) => true,
@@ -152,7 +154,7 @@ impl Study {
             robot_simple,
             slender_simple,
             purcell_displacement: found(
-                displacement(&DisplacementProblem::new(purcell)),
+                displacement(&DisplacementProblem::new(purcell).heading(Heading::Forwards)),
                 "the displacement gait of Purcell's swimmer",
             )?,
             robot_displacement,

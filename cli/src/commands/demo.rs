@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use calibrate::{PredictedCycle, TrackOptions, predict};
-use gait_optimizer::{DisplacementError, DisplacementProblem, Heading, OptimalGait, displacement};
+use gait_optimizer::{Bounds, DisplacementProblem, OptimalGait, displacement};
 use host_link::LinkError;
 use link_protocol::Refusal;
 use swimmer_files::{
@@ -30,6 +30,7 @@ use crate::interrupt::Interrupt;
 use crate::new_folder::NewFolder;
 use crate::output::Output;
 use crate::own_robot::PERIOD_S;
+use crate::playable::{playable, searched};
 use crate::progress::Progress;
 use crate::report;
 use crate::virtual_robot::{Carrier, EmulatedBoard, VirtualLine};
@@ -290,18 +291,13 @@ impl<'a> Round<'a> {
         Ok(PERIOD_S.max((1.1 * shortest_s).ceil()))
     }
 
-    /// The gait of most displacement within the servos' range that the robot accepts: where there is none, or links would
-    /// come too close, the bound on the joints is tightened. A swimmer that no gait carries forwards swims backwards.
+    /// Uploads the farthest playable gait. If no optimum exists within the servos' range, the bound on the joints is tightened.
     fn upload_best(&mut self, fitted: &SwimmerFile) -> Outcome<(OptimalGait, AnyGait, f64, f64)> {
-        let mut heading = Heading::Forwards;
         let mut bound = self.servo.max_angle;
         loop {
-            match self.try_bound(fitted, bound, heading) {
+            match self.try_bound(fitted, bound) {
                 Ok((best, gait, period_s)) => return Ok((best, gait, bound, period_s)),
                 Err(Refused::Here(_)) if bound - BOUND_STEP > LEAST_BOUND => bound -= BOUND_STEP,
-                Err(Refused::Here(_)) if heading == Heading::Forwards => {
-                    (heading, bound) = (Heading::Backwards, self.servo.max_angle);
-                }
                 Err(Refused::Here(failure) | Refused::Everywhere(failure)) => return Err(failure),
             }
         }
@@ -311,19 +307,19 @@ impl<'a> Round<'a> {
         &mut self,
         fitted: &SwimmerFile,
         bound: f64,
-        heading: Heading,
     ) -> Result<(OptimalGait, AnyGait, f64), Refused> {
-        let problem = DisplacementProblem {
-            heading: Some(heading),
-            simple: true,
-            ..DisplacementProblem::new(fitted.swimmer).with_max_angle(bound)
+        let within = playable(Bounds::within(bound), fitted);
+        let search = |bounds| {
+            let free = DisplacementProblem::new(fitted.swimmer);
+            Ok(displacement(&DisplacementProblem { bounds, ..free })?)
         };
-        let best = displacement(&problem).map_err(|error| match error {
-            DisplacementError::NoOptimum { .. }
-            | DisplacementError::Saddle { .. }
-            | DisplacementError::NotCertified { .. } => Refused::Here(error.into()),
-            error => Refused::Everywhere(error.into()),
-        })?;
+        let best =
+            searched((fitted, true), within, |gait| gait, search).map_err(
+                |failure| match failure {
+                    Failure::Tried(_) => Refused::Here(failure),
+                    failure => Refused::Everywhere(failure),
+                },
+            )?;
         let gait = best.gait().map_err(|error| {
             Refused::Everywhere(Failure::Tried(format!(
                 "the optimised gait cannot be swum: {error}"

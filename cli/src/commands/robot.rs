@@ -18,7 +18,7 @@ mod port;
 mod port_owner;
 pub(super) mod preflight;
 mod rest;
-mod servo;
+pub(super) mod servo;
 mod setup;
 mod stop;
 mod trim;
@@ -115,7 +115,7 @@ struct Upload {
     #[command(flatten)]
     preflight: preflight::Arguments,
     /// Send nothing: only foretell what the robot will make of the gait. Without --port no robot is asked, and the swimmer
-    /// is that of --swimmer; exit status 1 where the robot would refuse the gait
+    /// is that of --swimmer; exit status 1 if the gait must not be played
     #[arg(long)]
     dry_run: bool,
 }

@@ -68,27 +68,43 @@ fn a_robust_gait_has_the_keys_of_its_objective() {
     assert!(number(&found, "power_variation") > 1e-3, "{found:#}");
 }
 
+/// Keys of classes beyond simple gaits and of second searches are gone; the farther sense swims forwards.
 #[test]
-fn a_sideways_gait_has_no_angle_to_gain_by_bridges() {
-    let found = swimmer(&[
-        "optimize",
-        "sideways",
-        "--swimmer",
-        "robot",
-        "--max-angle",
-        "2.8",
-        "--json",
-    ])
-    .with_status(0)
-    .json();
-    assert_eq!(found.get("bridged_supremum_rad"), Some(&Value::Null));
-    number(&found, "heading_rad");
-    // A gait that touches its own images carries farther than any loop: no supremum is known.
+fn only_simple_gaits_are_printed() {
+    let gone = [
+        "exists",
+        "supremum_over_length",
+        "best_member",
+        "priced",
+        "bridged_supremum_rad",
+        "bridged_supremum_over_length",
+        "better",
+        "outdone_over_length",
+    ];
+    let of = |words: &[&str]| {
+        let within = ["--swimmer", "robot", "--max-angle", "2.8", "--json"];
+        let found = swimmer(&[&["optimize"], words, &within].concat());
+        let found = found.with_status(0).json();
+        for key in gone {
+            assert_eq!(found.get(key), None, "{words:?} {key}");
+        }
+        found
+    };
+    for words in [&["turning"][..], &["efficiency", "--gait=large"]] {
+        of(words);
+    }
+    number(&of(&["sideways"]), "heading_rad");
+    let timed = of(&["displacement", "--max-rate=3.5", "--period=7"]);
+    assert_eq!(timed["timing"].get("known_to_be_faster"), None);
+    let sector = |more: &[&str]| of(&[&["displacement", "--sector"], more].concat());
+    let (papers, farthest) = (sector(&["--sign=-"]), sector(&[]));
+    let x = |found: &Value| number(found, "displacement_over_length");
+    assert!(x(&papers) < -0.1 && (x(&farthest) + x(&papers)).abs() < 1e-12);
     assert_eq!(
-        found.get("bridged_supremum_over_length"),
-        Some(&Value::Null)
+        (&papers["clockwise"], &farthest["clockwise"]),
+        (&false.into(), &true.into())
     );
-    number(&found, "outdone_over_length");
+    assert_eq!(papers["arcs"], farthest["arcs"]);
 }
 
 #[test]

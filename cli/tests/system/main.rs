@@ -20,6 +20,7 @@ mod numbers;
 mod output_discipline;
 mod paper;
 mod pictures;
+mod playable;
 mod playlist;
 #[cfg(unix)]
 mod port_errors;

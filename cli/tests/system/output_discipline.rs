@@ -139,7 +139,7 @@ fn a_foretold_refusal_is_an_error_for_scripts() {
     let refused = answer["preflight"]["refused"].as_str().unwrap();
     assert_eq!(
         answer["error"],
-        format!("the robot would refuse circle:150deg: {refused}"),
+        format!("circle:150deg must not be played: {refused}"),
         "{answer:#}"
     );
     assert!(ran.stderr.contains(refused), "{ran}");

@@ -78,7 +78,7 @@ const ROWS: [Row; 51] = [
     row("simulate --swimmer good.toml --gait circle:1 --trajectory t.csv")
         .reads("good.toml")
         .writes("t.csv"),
-    row("optimize displacement --swimmer good.toml --max-angle 2.8 --simple -o o.gait")
+    row("optimize displacement --swimmer good.toml --max-angle 2.8 -o o.gait")
         .reads("good.toml")
         .writes("o.gait"),
     row("optimize efficiency --swimmer good.toml --max-angle 2.8 -o o.gait")

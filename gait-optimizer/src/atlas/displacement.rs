@@ -50,21 +50,14 @@ impl MultiStart for Displacement<'_> {
     }
 
     fn known(&self, problem: &AtlasProblem) -> Vec<OptimalGait> {
-        // The best simple curve may be an optimum beside the limit of such curves that carries farther.
-        let classes = [Heading::Forwards, Heading::Backwards]
+        let quarters = DisplacementProblem {
+            bounds: problem.bounds,
+            quarter_samples: problem.samples.div_ceil(4),
+            ..DisplacementProblem::new(problem.swimmer)
+        };
+        [Heading::Forwards, Heading::Backwards]
             .into_iter()
-            .flat_map(|heading| [(heading, true), (heading, false)]);
-        classes
-            .filter_map(|(heading, simple)| {
-                best_symmetric(&DisplacementProblem {
-                    bounds: problem.bounds,
-                    heading: Some(heading),
-                    simple,
-                    quarter_samples: problem.samples.div_ceil(4),
-                    ..DisplacementProblem::new(problem.swimmer)
-                })
-                .ok()
-            })
+            .filter_map(|heading| best_symmetric(&quarters, heading).ok())
             // Optimal among gaits of its symmetry; there it may be a saddle among all.
             .map(certified)
             .collect()

@@ -59,7 +59,6 @@ fn no_certified_gait_is_lost() {
     let known = crate::displacement(&crate::DisplacementProblem {
         bounds,
         heading: Some(crate::Heading::Backwards),
-        simple: true,
         ..crate::DisplacementProblem::new(swimmer)
     })
     .unwrap();
@@ -97,13 +96,13 @@ fn swimmer(middle: f64, chi: f64) -> Swimmer<f64> {
 fn what_is_best_of_its_symmetry_only_is_not_listed() {
     let bounds = Bounds::within(2.895);
     let swimmer = swimmer(0.302, 1.8425);
-    let known = crate::displacement::best_symmetric(&crate::DisplacementProblem {
+    let problem_of_quarters = crate::DisplacementProblem {
         bounds,
-        heading: Some(crate::Heading::Backwards),
-        simple: true,
         ..crate::DisplacementProblem::new(swimmer)
-    })
-    .unwrap();
+    };
+    let known =
+        crate::displacement::best_symmetric(&problem_of_quarters, crate::Heading::Backwards)
+            .unwrap();
     let certificate = &known.certificate;
     assert!(certificate.holds_among_symmetric() && !certificate.pass());
     let found = atlas(&AtlasProblem {

@@ -11,26 +11,19 @@ pub(super) struct Displacement<'a> {
 }
 
 impl Displacement<'_> {
-    /// Every gait at a value that heads a way, farthest first; also those that fail their certificate. A simple gait is followed
-    /// among such.
-    fn all(
-        &self,
-        value: f64,
-        (heading, simple): (Option<Heading>, bool),
-    ) -> Result<Vec<OptimalGait>, String> {
-        every(&DisplacementProblem {
-            swimmer: self.problem.swimmer_at(value),
+    /// Every gait of one sense at a parameter value, farthest first, including those that fail their certificate.
+    fn all(&self, value: f64, heading: Heading) -> Result<Vec<OptimalGait>, String> {
+        let problem = DisplacementProblem {
             bounds: self.problem.bounds_at(value),
-            heading,
             quarter_samples: (self.problem.samples / 4).clamp(64, 1 << 12),
-            simple,
-        })
-        .map_err(|error| error.to_string())
+            ..DisplacementProblem::new(self.problem.swimmer_at(value))
+        };
+        every(&problem, heading).map_err(|error| error.to_string())
     }
 
     fn nearest(&self, value: f64, to: &OptimalGait) -> Result<BranchPoint, String> {
         let place = kept(0.0, to.clone());
-        let all = self.all(value, (Some(heading(to)), !to.bounds.sector))?;
+        let all = self.all(value, to.heading_counter_clockwise())?;
         let found = all.into_iter().map(|gait| kept(value, gait));
         // An optimum before an extremal that is none.
         let far = |kept: &BranchPoint| {
@@ -44,14 +37,6 @@ impl Displacement<'_> {
         found
             .min_by(|a, b| far(a).total_cmp(&far(b)))
             .ok_or_else(|| "no gait heads this way".to_owned())
-    }
-}
-
-fn heading(gait: &OptimalGait) -> Heading {
-    if gait.displacement_over_length < 0.0 {
-        Heading::Backwards
-    } else {
-        Heading::Forwards
     }
 }
 
@@ -72,7 +57,7 @@ impl Family for Displacement<'_> {
         let value = self.problem.from;
         match start {
             Start::Displacement { heading, rank } => {
-                let all = self.all(value, (*heading, true))?;
+                let all = self.all(value, *heading)?;
                 let mut optima = optima(value, all);
                 optima
                     .nth(*rank)
@@ -96,7 +81,7 @@ impl Family for Displacement<'_> {
 
     fn optimum(&self, value: f64, last: &BranchPoint) -> Option<BranchPoint> {
         let all = self
-            .all(value, (Some(heading(&last.gait)), !last.gait.bounds.sector))
+            .all(value, last.gait.heading_counter_clockwise())
             .ok()?;
         optima(value, all).min_by(|a, b| a.apart(last).total_cmp(&b.apart(last)))
     }

@@ -3,10 +3,10 @@
 use swimmer_model::Swimmer;
 
 use super::*;
-use crate::{DisplacementProblem, EfficiencyProblem, displacement, efficiency};
+use crate::{DisplacementProblem, EfficiencyProblem, Heading, displacement, efficiency};
 
 const FARTHEST: Start = Start::Displacement {
-    heading: None,
+    heading: Heading::Forwards,
     rank: 0,
 };
 

@@ -7,7 +7,7 @@ use crate::immobile::Immobile;
 use crate::optimal_gait::OptimalGait;
 use crate::problem::InvalidProblem;
 
-/// What became of the extremals that the search sent out.
+/// Fates of the extremals that the search traced.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Fates {
     /// How many were sent out.
@@ -24,6 +24,24 @@ pub struct Fates {
     pub wrong_way: usize,
     /// Never ended, or the singular control broke down.
     pub lost: usize,
+}
+
+impl Fates {
+    /// Those of two searches.
+    fn and(self, more: &Self) -> Self {
+        Self {
+            sent: self.sent + more.sent,
+            ended: self.ended + more.ended,
+            nearest: [self.nearest, more.nearest]
+                .into_iter()
+                .flatten()
+                .reduce(f64::min),
+            came_back: self.came_back + more.came_back,
+            left_horizon: self.left_horizon + more.left_horizon,
+            wrong_way: self.wrong_way + more.wrong_way,
+            lost: self.lost + more.lost,
+        }
+    }
 }
 
 impl fmt::Display for Fates {
@@ -66,17 +84,12 @@ pub enum DisplacementError {
         fates: Fates,
     },
     /// Under these bounds there is no optimum with this sign of X.
-    #[error(
-        "no {heading} gait is a local optimum of displacement under these bounds{}; try other bounds or the other direction",
-        outdone_words(*.outdone)
-    )]
+    #[error("{}", no_optimum(*.heading))]
     NoOptimum {
-        /// Direction asked for.
-        heading: Heading,
-        /// What the search saw.
+        /// Requested sense; `None` for either.
+        heading: Option<Heading>,
+        /// Fates of the extremals.
         fates: Fates,
-        /// X over L of a gait within the bounds that is no extremal; none where the search saw no such gait.
-        outdone: Option<f64>,
     },
     /// The best gait with the paper's symmetries is a saddle among all closed curves.
     #[error(
@@ -101,7 +114,25 @@ pub enum DisplacementError {
 }
 
 impl DisplacementError {
-    /// What the search saw, for who knows the maximum principle; none where the error itself says it all.
+    /// The reason why neither sense has a gait: that of the sense that came closer to one.
+    pub(crate) fn or_backwards(self, backwards: Self) -> Self {
+        match (self, backwards) {
+            (Self::NoUnboundedOptimum { fates }, Self::NoUnboundedOptimum { fates: more }) => {
+                let fates = fates.and(&more);
+                Self::NoUnboundedOptimum { fates }
+            }
+            (Self::NoOptimum { fates, .. }, Self::NoOptimum { fates: more, .. }) => {
+                Self::NoOptimum {
+                    heading: None,
+                    fates: fates.and(&more),
+                }
+            }
+            (Self::NoOptimum { .. } | Self::NoUnboundedOptimum { .. }, closer) => closer,
+            (forwards, _) => forwards,
+        }
+    }
+
+    /// What the search saw, in the terms of the maximum principle; `None` if the error itself says it all.
     pub fn details(&self) -> Option<String> {
         match self {
             Self::NoUnboundedOptimum { fates } => Some(format!(
@@ -120,12 +151,13 @@ impl DisplacementError {
     }
 }
 
-/// That there are gaits all the same.
-fn outdone_words(outdone: Option<f64>) -> String {
-    outdone.map_or_else(String::new, |carried| {
-        format!(
-            ". There are gaits: one that is no extremal carries X/L = {carried:.6}, and the farthest go round shapes off all \
-             bounds along a slit, which this search does not know"
-        )
-    })
+fn no_optimum(heading: Option<Heading>) -> String {
+    heading.map_or_else(
+        || "no gait is a local optimum of displacement under these bounds; try other bounds".to_owned(),
+        |heading| {
+            format!(
+                "no {heading} gait is a local optimum of displacement under these bounds; try other bounds or the other direction"
+            )
+        },
+    )
 }

@@ -101,11 +101,6 @@ impl Quarter {
         self.met.end.is_some()
     }
 
-    /// Whether it keeps off the diagonals but for its ends.
-    pub(crate) fn is_simple(&self) -> bool {
-        !lasting(&self.legs).any(|leg| on_diagonal(&leg.motion))
-    }
-
     /// Whether it ends on φ₁ = −φ₂ as it may: beyond where it ran along that line.
     pub(crate) fn ended(&self) -> bool {
         let beyond = self.met.end.is_none_or(|[from, to]| {

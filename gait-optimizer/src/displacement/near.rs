@@ -1,4 +1,4 @@
-//! The gait of a design from the gait of a neighbouring one: the same arcs, their place found again, no search.
+//! Warm start: the gait of a design from the gait of a neighbouring one, with the same arcs and without a search.
 
 use swimmer_files::ArcKind;
 
@@ -6,16 +6,18 @@ use super::flow::Touch;
 use super::search::{Line, Search};
 use super::start_family::{StartFamily, families};
 use super::{DisplacementProblem, certified};
+use crate::cycle::Arc;
 use crate::momentum::Motion;
 use crate::optimal_gait::OptimalGait;
 use crate::region::Region;
 
-/// The optimum of a problem that lies near the optimum of a neighbouring one (another swimmer or other bounds, a little changed),
-/// with its own certificate. It costs a fraction of a search, and it is the neighbour's kind of gait: whether another kind has
-/// become better only [`displacement()`](super::displacement()) tells.
+/// Returns the optimum near that of a neighbouring problem (another swimmer or other bounds, a little changed), with its own
+/// certificate. It costs a fraction of a search and has the neighbour's sense and kinds of arcs: only
+/// [`displacement()`](super::displacement()) finds out if another kind has become better. Without a heading in the problem it
+/// swims forwards.
 ///
-/// None where there is no such gait near by, where it fails its certificate, or where the neighbour touches its own images: then
-/// ask for [`displacement()`](super::displacement()).
+/// Returns `None` if no such gait is near, if it fails its certificate, if the problem's heading is not the neighbour's, or if the
+/// neighbour runs along a diagonal.
 ///
 /// ```
 /// use gait_optimizer::{DisplacementProblem, displacement, displacement_near};
@@ -35,15 +37,17 @@ pub fn displacement_near(
     neighbour: &OptimalGait,
 ) -> Option<OptimalGait> {
     let model = problem.validated().ok()?;
-    // Gaits that touch their own images have the sector among their bounds.
-    if !neighbour.symmetric || neighbour.bounds.sector != problem.bounds.sector {
+    let heading = neighbour.heading_counter_clockwise();
+    let other_sense = problem.heading.is_some_and(|wanted| wanted != heading);
+    let on_diagonal = |arc: &Arc| arc.kind == ArcKind::Diagonal;
+    if !neighbour.symmetric || other_sense || neighbour.arcs.iter().any(on_diagonal) {
         return None;
     }
     let region = Region::new(&problem.bounds, &problem.swimmer.links);
     let search = Search {
         model: &model,
         region: &region,
-        sign: problem.heading().sign(),
+        sign: heading.sign(),
     };
     let leaves = neighbour
         .arcs
@@ -73,5 +77,9 @@ pub fn displacement_near(
             let [a, b] = [a, b].map(|candidate| candidate.quarter.end[2].abs());
             a.total_cmp(&b)
         })?;
-    certified(problem, &model, &found).filter(|gait| gait.certificate.pass())
+    let gait = certified(problem, &model, &found).filter(|gait| gait.certificate.pass())?;
+    Some(match problem.heading {
+        Some(_) => gait,
+        None => gait.swum_forwards(),
+    })
 }

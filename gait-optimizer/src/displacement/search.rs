@@ -64,37 +64,6 @@ pub(crate) struct Line<'a> {
 /// What quarters do where they first meet φ₁ = −φ₂. They are the same up to there.
 const TOUCHES: [Touch; 3] = [Touch::Ends, Touch::GoesInwards, Touch::GoesOutwards];
 
-/// What a scan saw beside the candidates.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Seen {
-    /// What became of those that end where they first meet φ₁ = −φ₂.
-    pub(crate) fates: Fates,
-    /// Extremals that end, whatever their λ₄ there: the family's index, what they do where they touch, the place and λ₃ x.
-    ended: Vec<(usize, Touch, f64, f64)>,
-}
-
-impl Seen {
-    /// Those of the extremals seen that carry farthest: gaits within the bounds, but no optima, since their λ₄ does not end at zero. Only
-    /// such as may carry a quarter farther than `least`.
-    pub(crate) fn farthest<'f>(
-        &self,
-        families: &'f [StartFamily],
-        least: f64,
-    ) -> impl Iterator<Item = (Line<'f>, f64)> + use<'f> {
-        const MOST: usize = 64;
-        /// How far off the coarse scan may be, over L.
-        const OFF: f64 = 1e-3;
-        let mut ended = self.ended.clone();
-        ended.retain(|(.., carried)| *carried > least - OFF);
-        ended.sort_by(|a, b| b.3.total_cmp(&a.3));
-        let places = ended.into_iter().take(MOST);
-        places.filter_map(|(index, touch, p, _)| {
-            let family = families.get(index)?;
-            Some((Line { family, touch }, p))
-        })
-    }
-}
-
 /// Places looked at on each family.
 pub(crate) const SCAN_POINTS: usize = 40;
 /// The same where that finds no optimum: the places from which extremals end may lie in a narrow gap.
@@ -118,32 +87,32 @@ const MOST_REFINEMENTS: usize = 2 * SCAN_POINTS;
 type Look = (f64, [Option<Miss>; 3]);
 
 impl<'a> Search<'a> {
-    /// All candidates, in the order of the families, and what became of the rest; so many places of each family are looked at.
+    /// All candidates, in the order of the families, and the fates of the scan, which probes a number of places of each family.
     pub(crate) fn candidates(
         &self,
         families: &[StartFamily],
         places: usize,
-    ) -> (Vec<Candidate>, Seen) {
-        let mut seen = Seen::default();
+    ) -> (Vec<Candidate>, Fates) {
+        let mut fates = Fates::default();
         let mut found = Vec::new();
-        for (index, family) in families.iter().enumerate() {
-            self.scan((index, family), places, &mut seen, &mut found);
+        for family in families {
+            self.scan(family, places, &mut fates, &mut found);
             found.extend(self.never_leaving(family));
         }
-        (found, seen)
+        (found, fates)
     }
 
     fn scan(
         &self,
-        (index, family): (usize, &StartFamily),
+        family: &StartFamily,
         places: usize,
-        seen: &mut Seen,
+        fates: &mut Fates,
         found: &mut Vec<Candidate>,
     ) {
         let [low, high] = family.range();
         let place = |look: usize| low + (high - low) * (look as f64 + 0.5) / places as f64;
         let mut looks: Vec<Look> = (0..places)
-            .map(|look| (place(look), self.look((index, family), place(look), seen)))
+            .map(|look| (place(look), self.look(family, place(look), fates)))
             .collect();
         // Between the outermost places and the family's own ends, where its arc shrinks to nothing.
         let [before, after] = [(looks.first(), low), (looks.last(), high)].map(|(last, end)| {
@@ -160,22 +129,12 @@ impl<'a> Search<'a> {
     }
 
     /// The extremals of the scan at one place.
-    fn look(
-        &self,
-        (index, family): (usize, &StartFamily),
-        p: f64,
-        seen: &mut Seen,
-    ) -> [Option<Miss>; 3] {
+    fn look(&self, family: &StartFamily, p: f64, fates: &mut Fates) -> [Option<Miss>; 3] {
         let shot = self.shoot(family, p, COARSE);
         if family.may(Touch::Ends) {
-            seen.fates.count(shot.as_ref());
+            fates.count(shot.as_ref());
         }
-        let misses = self.misses_of(shot.as_ref(), family, [true; 3]);
-        for (touch, miss) in TOUCHES.into_iter().zip(misses) {
-            seen.ended
-                .extend(miss.map(|miss| (index, touch, p, miss.carried)));
-        }
-        misses
+        self.misses_of(shot.as_ref(), family, [true; 3])
     }
 
     /// Roots between two places: where other arcs follow, or the extremal of one does not end, looks closer. At most `left` times on
@@ -275,11 +234,6 @@ impl<'a> Search<'a> {
             here = next;
         }
         None
-    }
-
-    /// What leaves a family at p, whatever its λ₄.
-    pub(super) fn candidate(&self, line: Line<'_>, p: f64) -> Option<Candidate> {
-        self.begun(line, p, &self.shoot(line.family, p, FINE)?)
     }
 
     /// The extremal that runs along the bounds to the very end.

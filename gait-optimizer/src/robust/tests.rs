@@ -18,10 +18,7 @@ fn fit() -> Uncertainty {
 }
 
 fn bounded() -> DisplacementProblem {
-    DisplacementProblem {
-        simple: true,
-        ..DisplacementProblem::new(Swimmer::robot()).with_max_angle(2.8)
-    }
+    DisplacementProblem::new(Swimmer::robot()).with_max_angle(2.8)
 }
 
 /// X/L by the model's own integration.

@@ -19,10 +19,6 @@ fn the_robot_moves_sideways_without_turning() {
     assert_eq!(found.gait.objective, Objective::Sideways);
     // Gait (b) turns its heading by 0.92028 rad either way (`swimmer simulate`), X/L = 0.0796979722.
     assert!(found.lateral_over_length >= 0.079_697_972_2 * 0.920_282_807_f64.sin() - 1e-8);
-    // A gait that touches its own images carries twice as far as any loop found, and a farther one touches more.
-    assert_eq!(found.bridged_supremum_over_length, None);
-    let outdone = found.outdone_over_length.unwrap();
-    assert!(outdone > found.lateral_over_length, "{outdone}");
     let model = Model::new(&Swimmer::robot()).unwrap();
     let stroke = swim(&model, &found.gait.gait().unwrap(), &Tolerance::default());
     let across = stroke.displacement_over_length().y;

@@ -35,9 +35,9 @@ const maps = SWIMMERS.flatMap((name) =>
   })),
 );
 const optima = [
-  ["displacement", ["displacement", "--simple"], ["displacement_over_length", "start_angle_rad"]],
+  ["displacement", ["displacement"], ["displacement_over_length", "start_angle_rad"]],
   ["efficiency-small", ["efficiency", "--gait", "small"], ["efficiency", "displacement_over_length", "start_angle_rad"]],
-  ["turning", ["turning"], ["rotation_rad", "bridged_supremum_rad"]],
+  ["turning", ["turning"], ["rotation_rad"]],
 ].flatMap(([what, words, keys]) =>
   SWIMMERS.map((name) => ({
     words: ["optimize", ...words, "--swimmer", name, ...bounded],

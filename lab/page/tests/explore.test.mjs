@@ -49,7 +49,7 @@ for (const [name, launch] of Object.entries(BROWSERS)) {
       await tab.until(() => JSON.parse(document.querySelector("#exact").textContent)[0] !== null, undefined, "the gait");
       await tab.settled();
       const [told] = await tab.exact();
-      const { displacement_over_length } = swimmer("optimize", "displacement", "--swimmer", "purcell", "--max-angle", "2.4", "--simple");
+      const { displacement_over_length } = swimmer("optimize", "displacement", "--swimmer", "purcell", "--max-angle", "2.4");
       assert.ok(Math.abs(told.displacement_over_length - displacement_over_length) < 1e-9, `${told.displacement_over_length}`);
       assert.ok(!(await tab.evaluate(() => location.hash)).includes("open="));
       await tab.close();
@@ -163,7 +163,7 @@ for (const [name, launch] of Object.entries(BROWSERS)) {
       await tab.until(() => document.querySelector("td[data-optimum=displacement]").textContent.includes("X/L"), undefined, "an optimum");
       await tab.settled();
       const [drawn, optimum] = await tab.exact();
-      const best = swimmer("optimize", "displacement", "--swimmer", "robot", "--max-angle", "2.3", "--simple");
+      const best = swimmer("optimize", "displacement", "--swimmer", "robot", "--max-angle", "2.3");
       assert.ok(Math.abs(optimum.displacement_over_length - best.displacement_over_length) < 1e-8);
       assert.ok(drawn.displacement_over_length < optimum.displacement_over_length);
       for (const [what, type, begins] of [

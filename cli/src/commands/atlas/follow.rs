@@ -4,8 +4,8 @@ mod answer;
 
 use clap::ValueEnum;
 use gait_optimizer::{
-    Atlas as Found, Bounds, Branch, ContinuationError, ContinuationProblem, Objective, Parameter,
-    Start, continuation,
+    Atlas as Found, Bounds, Branch, ContinuationError, ContinuationProblem, Heading, Objective,
+    Parameter, Start, continuation,
 };
 use swimmer_model::Swimmer;
 
@@ -122,7 +122,7 @@ impl Order {
             ));
         }
         let ranks = |count: usize| {
-            let heading = None;
+            let heading = Heading::Forwards;
             (0..count).map(move |rank| Start::Displacement { heading, rank })
         };
         match self.follow(ranks(MOST_GAITS).collect()) {

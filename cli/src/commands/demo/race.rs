@@ -10,9 +10,9 @@ use swimmer_files::{AnyGait, Bounds, GaitFile, GaitSpec, SwimmerFile};
 
 use super::{CYCLES, Round};
 use crate::arguments::model;
-use crate::bounds::playable;
 use crate::commands::calibrate::single_run;
 use crate::failure::{Failure, Outcome};
+use crate::playable::playable;
 use crate::threads;
 
 /// Both, on the way from the fitted model to the tank.

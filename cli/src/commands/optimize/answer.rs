@@ -11,21 +11,31 @@ use crate::document::Document;
 use crate::own_robot::PERIOD_S;
 use crate::quantity;
 
-/// Adds what is told of the quarter of a gait with the paper's symmetries.
+/// Adds displacement and arcs of a gait with the paper's symmetries, from its quarter.
 pub(super) fn tell_quarter(answer: &mut Document, gait: &OptimalGait) {
     answer
         .key("displacement_over_length", gait.displacement_over_length)
         .key("displacement_m", gait.displacement)
         .key("start_angle_rad", gait.start_angle)
-        .key("end_angle_rad", gait.end_angle)
-        .row(
-            "displacement X",
-            format!(
-                "{} per cycle   X/L = {:.10}",
-                quantity::length(gait.displacement),
-                gait.displacement_over_length
-            ),
-        )
+        .key("end_angle_rad", gait.end_angle);
+    if gait.objective == Objective::Displacement {
+        answer.key("clockwise", gait.is_clockwise());
+    }
+    answer.row(
+        "displacement X",
+        format!(
+            "{} per cycle   X/L = {:.10}",
+            quantity::length(gait.displacement),
+            gait.displacement_over_length
+        ),
+    );
+    if gait.objective == Objective::Displacement && gait.is_clockwise() {
+        answer.row(
+            "runs",
+            "clockwise; below, the quarter that is run counter-clockwise",
+        );
+    }
+    answer
         .row(
             "starts at",
             format!("φ₁ = φ₂ = {}", quantity::angle(gait.start_angle)),
@@ -97,7 +107,6 @@ impl Found {
         Self {
             answer,
             gaits: vec![(String::new(), file)],
-            failed: None,
         }
     }
 }

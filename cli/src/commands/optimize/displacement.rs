@@ -1,36 +1,30 @@
 //! `swimmer optimize displacement`: the gait of most displacement per cycle.
 
 use gait_optimizer::{
-    DisplacementError, DisplacementProblem, Heading, Suprema, displacement, robust_displacement,
+    DisplacementError, DisplacementProblem, Heading, OptimalGait, displacement, robust_displacement,
 };
 
 use super::answer::{say_if_beyond, tell_quarter};
-use super::better::than_displacement;
-use super::no_optimum::no_optimum;
 use super::robust::{Robustly, refused, robust_gait};
 use super::timing::ServoTiming;
 use super::{Found, Objective, Task};
 use crate::bounds::QuarterBounds;
 use crate::document::Document;
 use crate::failure::{Failure, Outcome};
-use crate::threads;
+use crate::playable::searched;
 
-/// Find the gait of most displacement per cycle by the maximum principle, with its certificate
+/// Find the simple gait of most displacement per cycle by the maximum principle, with its certificate
 ///
-/// Signed, per full cycle, for the gait run counter-clockwise: with no bound or --max-angle alone the local optimum with
-/// X > 0; with --min-angle or --sector the one with X < 0; --sign asks for the other. Where gaits along ever narrower slits carry
-/// ever farther no optimum exists: exit status 1, with the limit, a gait near it (which -o writes) and the fastest gait.
+/// Simple closed curves with the paper's two symmetries. The farthest gait of either sense, run so that it swims forwards (X > 0):
+/// if that is clockwise, the arcs and the start angle printed are those of the counter-clockwise quarter. --sign takes the
+/// local optimum of one sense instead, run counter-clockwise as in the paper: + for its gaits (a) and (b), - for (c) and (d).
 #[derive(Debug, clap::Args)]
 pub(crate) struct Displacement {
     #[command(flatten)]
     bounds: QuarterBounds,
-    /// The sign of X: + or -
+    /// The sign of X, run counter-clockwise: + or -; the farther of both, swum forwards, unless given
     #[arg(long, value_name = "SIGN", value_parser = sign, allow_hyphen_values = true)]
     sign: Option<Heading>,
-    /// Only gaits that do not touch their own images, as the paper's (a) to (c); limits of these may carry a little farther, along
-    /// slits that cost time. Implied by --robust and --max-rate
-    #[arg(long)]
-    simple: bool,
     #[command(flatten)]
     robustly: Robustly,
     #[command(flatten)]
@@ -42,8 +36,6 @@ impl Objective for Displacement {
         let problem = DisplacementProblem {
             bounds: self.bounds.of(&task.file),
             heading: self.sign,
-            // A slit costs no displacement, but time.
-            simple: self.simple || self.timing.max_rate.is_some(),
             ..DisplacementProblem::new(task.file.swimmer)
         };
         if let Some((uncertainty, over)) = self.robustly.load(&task.file)? {
@@ -52,32 +44,12 @@ impl Objective for Displacement {
                 .map_err(|error| refused(error, &self.bounds))?;
             return robust_gait(task, ("displacement", "X/L"), found, &self.timing);
         }
-        let (found, supremum) = task.timed(|| {
-            let found = displacement(&problem);
-            let mut suprema = Suprema::new(threads::available());
-            let supremum = match &found {
-                Ok(gait) => suprema.of(&problem, Some(gait)),
-                Err(DisplacementError::Saddle { gait }) => suprema.of(&problem, Some(gait)),
-                Err(
-                    DisplacementError::NoOptimum { .. } | DisplacementError::NotCertified { .. },
-                ) => suprema.of(&problem, None),
-                Err(_) => None,
-            };
-            (found, supremum)
-        });
-        if let Some(supremum) = supremum
-            && let Some(farthest) = supremum.members.last()
-        {
-            let local = found.as_ref().ok();
-            return Ok(no_optimum(
-                task,
-                &problem.bounds,
-                (&supremum, farthest),
-                local,
-            ));
-        }
-        let gait = found?;
-        let better = than_displacement(&problem, task.swimmer, &gait);
+        let is_playable = self.bounds.playable();
+        let search = |bounds| Ok(displacement(&DisplacementProblem { bounds, ..problem })?);
+        let gait = task.timed(|| {
+            let robot = (&task.file, is_playable);
+            searched(robot, problem.bounds, |gait| gait, search)
+        })?;
         say_if_beyond(task, &gait);
         let timed = self.timing.of(task, &gait)?;
         let mut answer = Document::new(format!(
@@ -85,31 +57,33 @@ impl Objective for Displacement {
             task.file.name
         ));
         tell_quarter(&mut answer, &gait);
-        // X/L of a gait within the bounds that carries farther but is no extremal, where no gaits were found that go on from there.
-        answer.key_if("outdone_over_length", gait.outdone_over_length);
-        if let Some(carried) = gait.outdone_over_length {
-            answer.row(
-                "not the farthest",
-                format!("a gait that is no extremal carries X/L = {carried:.6}"),
-            );
-        }
-        let sign = if gait.displacement > 0.0 { ">" } else { "<" };
-        let of = match gait.extremals {
-            None => String::new(),
-            Some(1) => "the only extremal found ".to_owned(),
-            Some(count) => format!("the {count} extremals found "),
-        };
-        answer.key_if("extremals", gait.extremals).row(
-            "best of",
-            format!(
-                "{of}with the paper's symmetries and X {sign} 0; `swimmer atlas --objective displacement` looks beyond"
-            ),
-        );
-        if let Some(better) = better {
-            better.tell(&mut answer, false);
-        }
+        answer
+            .key_if("extremals", gait.extremals)
+            .row("best of", class(&gait, self.sign));
         Ok(Found::gait(answer, task, &gait, timed))
     }
+}
+
+/// The class of gaits that this one is the best of.
+fn class(gait: &OptimalGait, sign: Option<Heading>) -> String {
+    let of = match gait.extremals {
+        None => String::new(),
+        Some(1) => "the only extremal found ".to_owned(),
+        Some(count) => format!("the {count} extremals found "),
+    };
+    let sign_of_x = if (gait.displacement > 0.0) == gait.is_clockwise() {
+        "<"
+    } else {
+        ">"
+    };
+    let both = match sign {
+        None => ", the farther sense",
+        Some(_) => "",
+    };
+    format!(
+        "{of}with the paper's symmetries and X {sign_of_x} 0 counter-clockwise{both}; `swimmer atlas --objective displacement` \
+         looks beyond"
+    )
 }
 
 fn sign(text: &str) -> Result<Heading, String> {
@@ -121,7 +95,7 @@ fn sign(text: &str) -> Result<Heading, String> {
 }
 
 impl From<DisplacementError> for Failure {
-    /// A problem that makes no sense is bad input; one without an optimum was tried.
+    /// An invalid problem is bad input; one without an optimum was tried.
     fn from(error: DisplacementError) -> Self {
         match error {
             DisplacementError::Problem(_) => Self::bad_input(&error),

@@ -7,7 +7,6 @@ use gait_optimizer::{
 };
 
 use super::answer::{say_if_beyond, tell_quarter};
-use super::better::than_efficiency;
 use super::robust::{Robustly, refused, robust_gait};
 use super::timing::{ServoTiming, Timed};
 use super::{Found, Objective, Task};
@@ -15,6 +14,7 @@ use crate::bounds::WholeBounds;
 use crate::document::Document;
 use crate::failure::{Failure, Outcome};
 use crate::output::verbose;
+use crate::playable::searched;
 use crate::quantity;
 
 /// Order of a robust gait's series unless told otherwise.
@@ -85,17 +85,18 @@ impl Objective for Efficiency {
                     .to_owned(),
             ));
         }
-        let gait = task.timed(|| match self.method {
-            How::Collocation => collocation::efficiency(&problem).map_err(Failure::from),
-            How::Auto | How::Fourier | How::Shooting => Ok(efficiency(&problem)?),
-        })?;
-        let better = than_efficiency(&problem, task.swimmer, &gait);
+        let search = |bounds| {
+            let problem = EfficiencyProblem { bounds, ..problem };
+            match self.method {
+                How::Collocation => collocation::efficiency(&problem).map_err(Failure::from),
+                How::Auto | How::Fourier | How::Shooting => Ok(efficiency(&problem)?),
+            }
+        };
+        let robot = (&task.file, self.bounds.playable());
+        let gait = task.timed(|| searched(robot, problem.bounds, |gait| gait, search))?;
         say_if_beyond(task, &gait);
         let timed = self.timing.of(task, &gait)?;
-        let mut answer = told(&task.file.name, &gait, timed.as_ref());
-        if let Some(better) = better {
-            better.tell(&mut answer, true);
-        }
+        let answer = told(&task.file.name, &gait, timed.as_ref());
         Ok(Found::gait(answer, task, &gait, timed))
     }
 }
@@ -184,7 +185,6 @@ mod tests {
         .unwrap();
         let task = Task {
             file: load_swimmer("purcell").unwrap(),
-            swimmer: "purcell",
             output: None,
             seconds: Cell::default(),
         };

@@ -2,12 +2,10 @@
 //! has a file, with its options, its search and how its gait is told.
 
 pub(crate) mod answer;
-mod better;
 mod displacement;
 mod efficiency;
 mod front;
 mod limited;
-mod no_optimum;
 mod pace;
 mod robust;
 mod sideways;
@@ -24,7 +22,7 @@ use swimmer_files::{GaitFile, SwimmerFile};
 
 use crate::arguments::load_swimmer;
 use crate::document::Document;
-use crate::failure::{Failure, Outcome};
+use crate::failure::Outcome;
 use crate::new_file::may_be_written;
 use crate::new_folder::NewFolder;
 use crate::output::Output;
@@ -73,8 +71,6 @@ pub(crate) trait Objective: clap::Args {
 /// For which swimmer, and where to.
 pub(crate) struct Task<'a> {
     file: SwimmerFile,
-    /// As on the command line.
-    swimmer: &'a str,
     output: Option<&'a Path>,
     /// What the search took.
     seconds: Cell<f64>,
@@ -101,8 +97,6 @@ pub(crate) struct Found {
     answer: Document,
     /// As written; the names are those in a folder.
     gaits: Vec<(String, GaitFile)>,
-    /// Why it is no optimum, where none exists: the answer says so, too.
-    failed: Option<String>,
 }
 
 // Its help is the objective's.
@@ -129,7 +123,6 @@ impl<O: Objective> Search<O> {
         }
         let task = Task {
             file: load_swimmer(&self.swimmer)?,
-            swimmer: &self.swimmer,
             output: place,
             seconds: Cell::default(),
         };
@@ -143,8 +136,6 @@ impl<O: Objective> Search<O> {
         }
         folder.map_or(Ok(()), NewFolder::publish)?;
         output.answer(&found.answer);
-        found
-            .failed
-            .map_or(Ok(()), |reason| Err(Failure::Answered(reason)))
+        Ok(())
     }
 }

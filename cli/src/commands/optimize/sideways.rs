@@ -7,14 +7,15 @@ use super::{Found, Objective, Task};
 use crate::bounds::WholeBounds;
 use crate::document::Document;
 use crate::failure::{Failure, Outcome};
+use crate::playable::searched;
 use crate::quantity;
 use crate::threads;
 
 /// Find the simple closed gait of most displacement across the heading at its first sample, without net rotation
 ///
 /// The first sample is free to choose, so it is part of what is optimised: either the heading there is square to the
-/// displacement, or as near to it as the loop gets. Bridges to another start do not count, so a wider bound can lower the
-/// answer: where a loop can no longer run into the corner that it starts from, only a bridge would lead there.
+/// displacement, or as near to it as the loop gets. Only simple loops count, so a wider bound can lower the displacement: a loop
+/// that no longer runs into the corner that it starts from is lost.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Sideways {
     #[command(flatten)]
@@ -30,7 +31,16 @@ impl Objective for Sideways {
             threads: threads::available(),
             ..SidewaysProblem::new(task.file.swimmer)
         };
-        let found = task.watched("looking for loops", |watch| sideways(&problem, watch))?;
+        let robot = (&task.file, self.bounds.playable());
+        let found = task.watched("looking for loops", |watch| {
+            let search = |bounds| Ok(sideways(&SidewaysProblem { bounds, ..problem }, watch)?);
+            searched(
+                robot,
+                problem.bounds,
+                |found: &gait_optimizer::Sideways| &found.gait,
+                search,
+            )
+        })?;
         let gait = &found.gait;
         say_if_beyond(task, gait);
         let signed = |value: f64| (value * 1e9).round() / 1e9 + 0.0;
@@ -42,15 +52,6 @@ impl Objective for Sideways {
             // Across the heading at the first sample, positive, and along it.
             .key("lateral_over_length", found.lateral_over_length)
             .key("displacement_over_length", gait.displacement_over_length)
-            // What bridges to another start, which do not count, would come near to; null where nobody knows how far gaits carry.
-            .key(
-                "bridged_supremum_over_length",
-                found.bridged_supremum_over_length,
-            )
-            // Of a known gait that moves farther across and is no optimum.
-            .key_if("outdone_over_length", found.outdone_over_length)
-            // Null: these gaits do not rotate, and what bridges would bring is the length above.
-            .key("bridged_supremum_rad", None::<f64>)
             .key("rotation_rad", gait.rotation)
             .key("heading_rad", gait.heading())
             .key("loops", found.loops)
@@ -63,23 +64,9 @@ impl Objective for Sideways {
                 "along the heading",
                 format!("X/L = {:.9}", signed(gait.displacement_over_length)),
             )
+            .row("net rotation", quantity::angle(gait.rotation))
+            .row("arcs", gait.arcs.len().to_string())
             .row(
-                "with bridges",
-                found.bridged_supremum_over_length.map_or_else(
-                    || "nobody knows how far: gaits that are no optima carry farther than every loop found".to_owned(),
-                    |supremum| format!("up to |Y|/L = {supremum:.9}"),
-                ),
-            )
-            .row("net rotation", quantity::angle(gait.rotation));
-        if let Some(farther) = found.outdone_over_length {
-            answer.row(
-                "outdone",
-                format!(
-                    "|Y|/L = {farther:.9} by a gait that touches its own image, which is no optimum"
-                ),
-            );
-        }
-        answer.row("arcs", gait.arcs.len().to_string()).row(
             "best of",
             format!(
                 "the {} simple loops found, each with its best first sample; `swimmer optimize displacement` finds gaits of \

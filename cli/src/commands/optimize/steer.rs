@@ -5,7 +5,7 @@ use swimmer_files::SwimmerFile;
 use swimmer_model::Pose;
 
 use super::{Found, Objective, Task};
-use crate::arguments::{joint_angle, rate};
+use crate::arguments::{angle, rate};
 use crate::bounds::WholeBounds;
 use crate::document::Document;
 use crate::failure::{Failure, Outcome};
@@ -34,7 +34,7 @@ fn shape(text: &str) -> Result<[f64; 2], String> {
     let (one, two) = text
         .split_once(',')
         .ok_or_else(|| format!("`{text}` is no shape: give ANGLE,ANGLE, as 80deg,32deg"))?;
-    Ok([joint_angle(one.trim())?, joint_angle(two.trim())?])
+    Ok([angle(one.trim())?, angle(two.trim())?])
 }
 
 impl Steer {
@@ -117,11 +117,7 @@ impl Objective for Steer {
                 format!("{}, where side links stay apart", quantity::angle(angle)),
             );
         }
-        Ok(Found {
-            answer,
-            gaits,
-            failed: None,
-        })
+        Ok(Found { answer, gaits })
     }
 }
 

@@ -1,12 +1,11 @@
 //! Servo limits on the timing of an optimised gait: `--max-rate` and `--period`.
 
 use forecast::{Timing, TimingError, timing_of_table};
-use gait_optimizer::{Fastest, OptimalGait};
+use gait_optimizer::OptimalGait;
 use swimmer_files::{AnyGait, GaitFile};
 use swimmer_model::{Model, Tolerance, swim};
 
 use super::Task;
-use super::better::Better;
 use crate::arguments::{rate, seconds};
 use crate::document::{Document, object};
 use crate::failure::{Failure, Outcome};
@@ -33,8 +32,6 @@ pub(super) struct Timed {
     pub(super) efficiency: f64,
     /// |d| over the period.
     speed_m_per_s: f64,
-    /// The gait that is made for speed, where it is faster.
-    faster: Option<Better<Fastest>>,
 }
 
 impl ServoTiming {
@@ -53,12 +50,9 @@ impl ServoTiming {
             .displacement_over_length
             .hypot(gait.lateral_over_length)
             * length;
-        let speed_m_per_s = distance / timing.period;
-        let fastest = Better::fastest(task, &gait.bounds, max_rate);
         Ok(Some(Timed {
             efficiency: swim(&model, &timed, &Tolerance::default()).efficiency(),
-            speed_m_per_s,
-            faster: fastest.filter(|better| better.gait.speed_over_length * length > speed_m_per_s),
+            speed_m_per_s: distance / timing.period,
             timing,
             file,
         }))
@@ -70,7 +64,7 @@ impl Timed {
     pub(super) fn tell(&self, answer: &mut Document) {
         let timing = &self.timing;
         let rate = |value: f64| format!("{} a second", quantity::angle(value));
-        let mut told = object! {
+        let told = object! {
             "period_s": timing.period,
             "period_min_s": timing.shortest_period,
             "max_rate_rad_s": timing.max_rate,
@@ -105,21 +99,6 @@ impl Timed {
                 "speed",
                 format!("{} a second", quantity::length(self.speed_m_per_s)),
             );
-        if let Some(Better { command, gait }) = &self.faster {
-            let speed = gait.speed_over_length * gait.gait.swimmer.total_length();
-            let period = gait.period;
-            told.key(
-                "known_to_be_faster",
-                object! {"command": command.clone(), "speed_m_per_s": speed, "period_s": period},
-            );
-            answer.row(
-                "known to be faster",
-                format!(
-                    "`{command}`: {} a second, a cycle in {period:.3} s",
-                    quantity::length(speed)
-                ),
-            );
-        }
         answer.key("timing", told);
     }
 }

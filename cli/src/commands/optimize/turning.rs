@@ -7,6 +7,7 @@ use super::{Found, Objective, Task};
 use crate::bounds::WholeBounds;
 use crate::document::Document;
 use crate::failure::{Failure, Outcome};
+use crate::playable::searched;
 use crate::quantity;
 
 /// Find the simple closed gait that turns the swimmer most per cycle, with its certificate
@@ -23,11 +24,18 @@ impl Objective for Turning {
     const WRITES: &'static str = "Write the gait, at constant power, as a gait file";
 
     fn search(&self, task: &Task) -> Outcome<Found> {
-        let problem = TurningProblem {
-            swimmer: task.file.swimmer,
-            bounds: self.bounds.of(&task.file),
-        };
-        let found = task.timed(|| turning(&problem))?;
+        let swimmer = task.file.swimmer;
+        let search = |bounds| Ok(turning(&TurningProblem { swimmer, bounds })?);
+        let robot = (&task.file, self.bounds.playable());
+        let bounds = self.bounds.of(&task.file);
+        let found = task.timed(|| {
+            searched(
+                robot,
+                bounds,
+                |found: &gait_optimizer::Turning| &found.gait,
+                search,
+            )
+        })?;
         let gait = &found.gait;
         say_if_beyond(task, gait);
         let mut answer = Document::new(format!(
@@ -36,8 +44,6 @@ impl Objective for Turning {
         ));
         answer
             .key("rotation_rad", gait.rotation)
-            // What loops that join all regions by bridges come near to.
-            .key("bridged_supremum_rad", found.bridged_supremum)
             // Connected, of that sign.
             .key("regions", found.regions)
             .key("displacement_over_length", gait.displacement_over_length)
@@ -48,14 +54,6 @@ impl Objective for Turning {
                     "{} per cycle, {:.10} rad",
                     quantity::angle(gait.rotation),
                     gait.rotation
-                ),
-            )
-            .row(
-                "with bridges",
-                format!(
-                    "below {} ({} regions)",
-                    quantity::angle(found.bridged_supremum),
-                    found.regions
                 ),
             )
             .row(

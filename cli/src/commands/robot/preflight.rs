@@ -162,8 +162,9 @@ pub(super) struct Preflight {
     tank: Option<TankAnswer>,
     #[serde(flatten)]
     played: PlayedAnswer,
+    /// Why it must not be played although the robot would.
     #[serde(skip)]
-    pub(super) refused: Option<String>,
+    pub(super) unseen_by_robot: Option<String>,
 }
 
 #[derive(Debug, Serialize)]
@@ -251,15 +252,17 @@ impl Arguments {
             .transpose()
             .map_err(|error| Failure::bad_input(&error))?;
         let meeting = |tank: &Tank| until_wall(&model, &told.way, tank, &self.room.start());
+        let tank = self.room.tank.as_ref();
+        let tank = tank.map(|tank| TankAnswer::new(tank, meeting(tank), self.period));
+        let mut preflight = Preflight::new(name, player, &told);
+        if let Some(tank) = tank.as_ref().filter(|tank| tank.is_too_small()) {
+            preflight.refuse(format!("the tank of {tank}"));
+        }
         Ok(Preflight {
             displacement_error_m: error,
             level: fit.map(|fit| fit.level),
-            tank: self
-                .room
-                .tank
-                .as_ref()
-                .map(|tank| TankAnswer::new(tank, meeting(tank), self.period)),
-            ..Preflight::new(name, player, &told)
+            tank,
+            ..preflight
         })
     }
 }
@@ -282,8 +285,26 @@ impl Preflight {
             level: None,
             tank: None,
             played: PlayedAnswer::new(told),
-            refused: told.verdict.refused.clone(),
+            unseen_by_robot: told
+                .verdict
+                .refused
+                .is_none()
+                .then(|| told.too_close())
+                .flatten(),
         }
+    }
+
+    /// Refuses the gait for a reason that the robot cannot see, unless there is another one.
+    fn refuse(&mut self, reason: String) {
+        if self.played.refused.is_none() {
+            self.played.refused = Some(reason.clone());
+            self.unseen_by_robot = Some(reason);
+        }
+    }
+
+    /// Why the gait must not be played; `None` if it may.
+    pub(super) fn refusal(&self) -> Option<&str> {
+        self.played.refused.as_deref()
     }
 }
 
@@ -329,10 +350,9 @@ impl fmt::Display for Preflight {
         }
         rows.row(
             "robot",
-            if self.refused.is_none() {
-                "will play it"
-            } else {
-                "will refuse it"
+            match self.refusal() {
+                None => "will play it".to_owned(),
+                Some(reason) => format!("must not play it: {reason}"),
             },
         );
         write!(
@@ -353,6 +373,13 @@ impl TankAnswer {
             meets: meeting.map(|meeting| meeting.part.word()),
             at_m: meeting.map(|meeting| meeting.at.into()),
         }
+    }
+}
+
+impl TankAnswer {
+    /// Whether a wall is met before the first cycle.
+    fn is_too_small(&self) -> bool {
+        self.cycles.is_some_and(|cycles| cycles <= 0.0)
     }
 }
 

@@ -112,6 +112,16 @@ pub(super) fn run(access: &Access, arguments: &Upload, output: Output) -> Outcom
         }
         Err(failure) => return Err(failure),
     };
+    // What the robot sees, it refuses itself.
+    let unseen = preflight
+        .as_ref()
+        .and_then(|told| told.unseen_by_robot.as_ref());
+    if let Some(reason) = unseen.filter(|_| !arguments.owner.force) {
+        return Err(Failure::Tried(format!(
+            "{} must not be played: {reason}; --force uploads it all the same",
+            gait.name
+        )));
+    }
     let predicted = line.robot.expected_upload(gait.table.bytes().len());
     let begun = line.robot.port().now();
     let info = send(&mut line, &gait, &interrupt)?;
@@ -128,15 +138,15 @@ pub(super) fn run(access: &Access, arguments: &Upload, output: Output) -> Outcom
     line.close()
 }
 
-/// `--dry-run`: exit status 1 where the robot would refuse.
+/// `--dry-run`: exit status 1 if the gait must not be played.
 fn foretell_alone(arguments: &Upload, gait: &Prepared, player: &Player, output: Output) -> Outcome {
     let preflight = arguments
         .preflight
         .foretell(&gait.name, &gait.gait, player)?;
-    let refused = preflight.refused.clone();
+    let refused = preflight.refusal();
+    let refused = refused.map(|reason| format!("{} must not be played: {reason}", gait.name));
     let foretold = Foretold { preflight };
     if let Some(reason) = refused {
-        let reason = format!("the robot would refuse {}: {reason}", gait.name);
         return answer_no(output, &foretold, reason);
     }
     output.answer(&foretold);

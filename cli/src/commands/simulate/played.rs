@@ -75,7 +75,7 @@ pub(crate) struct PlayedAnswer {
     gap_designed_m: f64,
     gap_margin_m: f64,
     min_period_s: f64,
-    refused: Option<String>,
+    pub(crate) refused: Option<String>,
     warnings: Vec<String>,
 }
 
@@ -134,7 +134,7 @@ impl PlayedAnswer {
             gap_designed_m: forecast.designed_gap.distance,
             gap_margin_m: forecast.margin,
             min_period_s: forecast.verdict.min_period,
-            refused: forecast.verdict.refused.clone(),
+            refused: forecast.refusal(),
             warnings: forecast
                 .warnings()
                 .into_iter()

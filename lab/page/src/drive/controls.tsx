@@ -62,13 +62,13 @@ function Preflight() {
   const displacement = told.displacement_m ? Math.hypot(...told.displacement_m) : 0;
   return (
     <div class="preflight" id="preflight">
-      <p class={told.refused ? "error" : "good"}>{told.refused ? `The robot would refuse it: ${told.refused}.` : "The robot will play it."}</p>
+      <p class={told.refused ? "error" : "good"}>{told.refused ? `The robot must not play it: ${told.refused}.` : "The robot will play it."}</p>
       <p class="soft">
         {length(displacement)} a cycle, {figure((told.loss_share ?? 0) * 100, 2)} % less than designed; shortest period {figure(told.min_period_s, 2)} s
         {told.servo_assumed ? "; the servos’ dead band is assumed" : ""}.
       </p>
       {told.configured_as === false && <p class="error">The robot is configured as another swimmer than Explore’s: what is foretold is not for it.</p>}
-      {told.warnings.filter((warning) => !warning.startsWith("the robot would refuse")).map((warning) => <p key={warning} class="soft">{warning}.</p>)}
+      {told.warnings.filter((warning) => !told.refused || !warning.endsWith(told.refused)).map((warning) => <p key={warning} class="soft">{warning}.</p>)}
     </div>
   );
 }

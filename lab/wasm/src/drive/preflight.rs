@@ -68,7 +68,7 @@ pub(super) fn preflight(_lab: &mut Lab, bytes: &[u8]) -> Outcome {
         "rotation_rad": played.map(|played| played.rotation),
         "loss_share": told.share(told.total_loss()),
         "losses": losses,
-        "refused": told.verdict.refused,
+        "refused": told.refusal(),
         "warnings": told.warnings(),
         // Nothing is known of the servos but what a good one is.
         "servo_assumed": file.servo.is_none(),

@@ -49,8 +49,6 @@ struct Found {
     /// Of the fastest.
     period_s: Option<f64>,
     speed_over_length_per_s: Option<f64>,
-    /// What bridges to further regions would come near to.
-    bridged_supremum_rad: Option<f64>,
     /// The gait file.
     gait: String,
 }
@@ -71,8 +69,6 @@ pub(super) fn optimize(_: &mut Lab, bytes: &[u8]) -> Outcome {
         What::Displacement => {
             let problem = DisplacementProblem {
                 bounds,
-                // Limits of simple gaits take ten times as long to find, and a hand waits.
-                simple: true,
                 ..DisplacementProblem::new(swimmer)
             };
             Found::new(
@@ -85,10 +81,7 @@ pub(super) fn optimize(_: &mut Lab, bytes: &[u8]) -> Outcome {
         What::Turning => {
             let found =
                 turning(&TurningProblem { swimmer, bounds }).map_err(|why| why.to_string())?;
-            Found {
-                bridged_supremum_rad: Some(found.bridged_supremum),
-                ..Found::new(&found.gait, &file.name)
-            }
+            Found::new(&found.gait, &file.name)
         }
         What::Sideways => {
             let problem = SidewaysProblem {
@@ -138,7 +131,6 @@ impl Found {
             certificate: gait.certificate.clone(),
             period_s: None,
             speed_over_length_per_s: None,
-            bridged_supremum_rad: None,
             gait: gait.gait_file(name).to_text(),
         }
     }
