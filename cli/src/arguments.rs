@@ -5,7 +5,7 @@ use std::str::FromStr;
 use std::time::Duration;
 
 use swimmer_files::{
-    AnyGait, GaitFile, GaitSpec, Provenance, SwimmerFile, parse_angle, parse_joint_angle,
+    AnyGait, GaitFile, GaitSpec, Provenance, SwimmerFile, parse_angle, parse_rate,
 };
 use swimmer_model::Model;
 
@@ -17,19 +17,14 @@ pub(crate) fn angle(text: &str) -> Result<f64, String> {
     parse_angle(text).map_err(|error| error.to_string())
 }
 
-/// The angle of a joint on the command line, in radians.
-pub(crate) fn joint_angle(text: &str) -> Result<f64, String> {
-    parse_joint_angle(text).map_err(|error| error.to_string())
-}
-
-/// An angle of a joint above zero on the command line, in radians.
+/// An angle above zero on the command line, in radians.
 pub(crate) fn positive_angle(text: &str) -> Result<f64, String> {
-    above_zero_angle(joint_angle(text)?, "the angle")
+    above_zero_angle(angle(text)?, "the angle")
 }
 
 /// The half width of a dead band on the command line, zero or above, in radians.
 pub(crate) fn dead_band(text: &str) -> Result<f64, String> {
-    let angle = joint_angle(text)?;
+    let angle = angle(text)?;
     if angle >= 0.0 {
         Ok(angle)
     } else {
@@ -37,9 +32,10 @@ pub(crate) fn dead_band(text: &str) -> Result<f64, String> {
     }
 }
 
-/// An angle a second, above zero, on the command line, in radians a second; any number of turns.
+/// An angle a second, above zero, on the command line, in radians a second.
 pub(crate) fn rate(text: &str) -> Result<f64, String> {
-    above_zero_angle(angle(text)?, "the rate")
+    let rate = parse_rate(text).map_err(|error| error.to_string())?;
+    above_zero_angle(rate, "the rate")
 }
 
 fn above_zero_angle(angle: f64, what: &str) -> Result<f64, String> {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use swimmer_files::{Fluid, SwimmerFile};
+use swimmer_files::{Fluid, Quantity, SwimmerFile};
 use swimmer_model::{Model, TangentialDrag};
 
 use crate::arrays::{Array, Numbers, Shapes};
@@ -85,6 +85,15 @@ impl Swimmer {
                 *place = value;
             }
         };
+        for (key, value) in [
+            ("middle", middle),
+            ("side", side),
+            ("front", front),
+            ("back", back),
+        ] {
+            let checked = value.map_or(Ok(0.0), |value| Quantity::Length.checked(value));
+            checked.map_err(|slip| BadInput::new_err(slip.of_key(key)))?;
+        }
         if let Some(name) = name {
             file.name = name;
         }

@@ -81,6 +81,17 @@ def test_bad_input_says_what_the_command_says(purcell: sw.Swimmer, tmp_path: Pat
         sw.Swimmer.preset("purcel")
 
 
+def test_a_slip_of_a_unit_is_bad_input(robot: sw.Swimmer) -> None:
+    with pytest.raises(sw.BadInput, match="middle = 50 is in metres: did you mean 50 mm"):
+        robot.replace(middle=50.0)
+    with pytest.raises(sw.BadInput, match="did you mean 90.0deg"):
+        sw.plan(robot, to=(0.2, 0.1, 90.0), max_rate=3.0)
+    with pytest.raises(sw.BadInput, match="did you mean 200.0deg"):
+        sw.optimize.speed(robot, max_rate=200.0)
+    with pytest.raises(sw.BadInput, match="did you mean 70.0deg"):
+        sw.Gait.circle(70.0)
+
+
 def test_a_try_that_failed_says_so(purcell: sw.Swimmer) -> None:
     with pytest.raises(sw.Failed) as failed:
         sw.optimize.efficiency(purcell, gait="large", max_angle=1.0)

@@ -4,6 +4,7 @@ use std::fmt;
 
 use gait_optimizer::{Bounds, Parameter};
 use serde::{Deserialize, Serialize};
+use swimmer_files::Quantity;
 use swimmer_model::{Swimmer, TangentialDrag};
 
 use crate::Aim;
@@ -117,6 +118,16 @@ impl Field {
             Self::NoOverlap => "bounds.no_overlap",
             Self::MaxRate => "max_rate",
             Self::Objective => "objective",
+        }
+    }
+
+    /// The kind of quantity whose bare numbers are checked for a slip of their unit; `None` for all others.
+    pub(crate) fn quantity(self) -> Option<Quantity> {
+        match self {
+            Self::Middle | Self::Side | Self::Front | Self::Back => Some(Quantity::Length),
+            Self::MaxAngle | Self::MinAngle => Some(Quantity::Angle),
+            Self::MaxRate => Some(Quantity::Rate),
+            _ => None,
         }
     }
 

@@ -6,7 +6,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use serde::Deserialize;
-use swimmer_files::{FileError, SwimmerFile, parse_angle};
+use swimmer_files::{FileError, SwimmerFile, parse_angle, parse_rate};
 use toml::Spanned;
 
 use crate::objective::Aim;
@@ -96,24 +96,45 @@ impl Text<'_> {
         FileError::at(self.path, line, column, problem).into()
     }
 
-    fn angle(&self, name: &str, number: &Number, span: &Range<usize>) -> Result<f64, SweepError> {
-        let value = self.number(number, span)?;
+    /// Reads a number of a field above zero.
+    fn positive(
+        &self,
+        field: Field,
+        number: &Number,
+        span: &Range<usize>,
+    ) -> Result<f64, SweepError> {
+        let value = self.number(field, number, span)?;
         if value > 0.0 && value.is_finite() {
             Ok(value)
         } else {
+            let name = field.name();
+            let name = name.strip_prefix("bounds.").unwrap_or(name);
             Err(self.wrong(span.clone(), format!("{name} = {value} must be above zero")))
         }
     }
 
-    fn number(&self, number: &Number, span: &Range<usize>) -> Result<f64, SweepError> {
+    /// Reads a number of a field, and refuses a slip of its unit.
+    fn number(
+        &self,
+        field: Field,
+        number: &Number,
+        span: &Range<usize>,
+    ) -> Result<f64, SweepError> {
+        let parse = match field {
+            Field::MaxRate => parse_rate,
+            _ => parse_angle,
+        };
         match number {
-            Number::Plain(value) => Ok(*value),
+            Number::Plain(value) => match field.quantity().map(|of| of.checked(*value)) {
+                Some(Err(slip)) => Err(self.wrong(span.clone(), slip.of_key(field.name()))),
+                _ => Ok(*value),
+            },
             Number::Choice(_) => Err(self.wrong(
                 span.clone(),
                 "a number is meant here, or an angle such as \"160deg\"",
             )),
             Number::Angle(text) => {
-                parse_angle(text).map_err(|error| self.wrong(span.clone(), error.to_string()))
+                parse(text).map_err(|error| self.wrong(span.clone(), error.to_string()))
             }
         }
     }
@@ -132,7 +153,7 @@ pub(crate) fn read(text: &str, path: &Path) -> Result<Content, SweepError> {
     let objectives = objectives(&source, &raw, &axis)?;
     let tasks = tasks(&source, &raw, &axis, design)?;
     let max_rate = raw.max_rate.as_ref().map(|told| {
-        let rate = |one| source.angle("max_rate", one, &told.span());
+        let rate = |one| source.positive(Field::MaxRate, one, &told.span());
         match told.get_ref() {
             RawRates::Both(both) => rate(both).map(|rate| [rate; 2]),
             RawRates::Each([one, two]) => Ok([rate(one)?, rate(two)?]),
@@ -253,18 +274,18 @@ fn aim(source: &Text<'_>, raw: &Raw, told: &Spanned<String>) -> Result<Aim, Swee
 }
 
 fn bounds(source: &Text<'_>, raw: &RawBounds) -> Result<KeptBounds, SweepError> {
-    let angle = |name: &str, number: &Option<Spanned<Number>>| {
+    let positive = |field: Field, number: &Option<Spanned<Number>>| {
         number
             .as_ref()
-            .map(|number| source.angle(name, number.get_ref(), &number.span()))
+            .map(|number| source.positive(field, number.get_ref(), &number.span()))
             .transpose()
     };
     Ok(KeptBounds {
-        max_angle: angle("max_angle", &raw.max_angle)?,
-        min_angle: angle("min_angle", &raw.min_angle)?,
+        max_angle: positive(Field::MaxAngle, &raw.max_angle)?,
+        min_angle: positive(Field::MinAngle, &raw.min_angle)?,
         sector: raw.sector,
         no_overlap: raw.no_overlap,
-        clearance: angle("clearance", &raw.clearance)?.unwrap_or(0.0),
+        clearance: positive(Field::Clearance, &raw.clearance)?.unwrap_or(0.0),
     })
 }
 

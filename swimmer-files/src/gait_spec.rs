@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use crate::{AnyGait, FileError, GaitFile, parse_joint_angle};
+use crate::{AnyGait, FileError, GaitFile, parse_angle};
 
 /// A gait as named by a person.
 #[derive(Debug, Clone, PartialEq)]
@@ -107,7 +107,7 @@ impl FromStr for GaitSpec {
 /// The shape that was meant, where a word nearly names one; paths have more in them than a word and an angle.
 fn meant(shape: &str) -> Option<String> {
     let (word, amplitude) = shape.split_once(':').unwrap_or((shape, "70deg"));
-    if !word.chars().all(char::is_alphabetic) || parse_joint_angle(amplitude).is_err() {
+    if !word.chars().all(char::is_alphabetic) || parse_angle(amplitude).is_err() {
         return None;
     }
     let word = word.to_lowercase();
@@ -117,7 +117,7 @@ fn meant(shape: &str) -> Option<String> {
 }
 
 fn size(text: &str, amplitude: &str) -> Result<f64, GaitSpecError> {
-    let amplitude = parse_joint_angle(amplitude).map_err(|source| GaitSpecError::Amplitude {
+    let amplitude = parse_angle(amplitude).map_err(|source| GaitSpecError::Amplitude {
         text: text.to_owned(),
         source,
     })?;

@@ -31,7 +31,6 @@
 //! # Ok::<(), swimmer_files::FileError>(())
 //! ```
 
-mod angle;
 mod any_gait;
 mod atomic;
 mod axes;
@@ -44,10 +43,10 @@ mod link_log;
 mod place;
 mod playlist;
 mod provenance;
+mod quantity;
 mod swimmer_file;
 mod toml_text;
 
-pub use angle::{AngleError, parse_angle, parse_joint_angle};
 pub use any_gait::AnyGait;
 pub use atomic::{stream_atomically, write_atomically};
 pub use axes::Axes;
@@ -66,4 +65,5 @@ pub use link_log::{
 pub use place::FileError;
 pub use playlist::{Playlist, PlaylistStep};
 pub use provenance::{InputHash, Provenance, hash_of};
+pub use quantity::{AngleError, Quantity, Slip, parse_angle, parse_rate};
 pub use swimmer_file::{Fluid, ServoFile, SwimmerFile};

@@ -102,7 +102,7 @@ fn axis(source: &Text<'_>, told: &Spanned<RawAxis>, grid: bool) -> Result<Axis, 
             Err(mistake("its values are numbers, neither true nor false"))
         }
         (_, true) => Err(mistake(CHOICE)),
-        (number, false) => source.number(number, &span),
+        (number, false) => source.number(name, number, &span),
     };
     if name == Field::Objective && raw.values.is_none() {
         return wrong(OBJECTIVES);

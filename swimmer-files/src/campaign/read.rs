@@ -9,7 +9,7 @@ use super::raw::{RawCampaign, RawPoint, RawReflector, RawReflectors, RawRun, Raw
 use super::table::table;
 use super::told;
 use super::{Campaign, CampaignRun, PointName, Reflector, Reflectors, RunTiming, TrackSettings};
-use crate::{FileError, GaitSpec, SwimmerFile};
+use crate::{FileError, GaitSpec, Quantity, SwimmerFile};
 
 /// The campaign of `text`; `is_there` says whether a file that a run names can be found, `find` reads the swimmer that it names, from
 /// its folder on.
@@ -170,6 +170,12 @@ fn reflector(
             raw.at.span().start,
             format!("at = {at:?} must be two finite lengths in metres"),
         ));
+    }
+    for value in at {
+        let slip = Quantity::Length.checked(value).err();
+        if let Some(slip) = slip {
+            return Err(error(raw.at.span().start, format!("at = {at:?}: {slip}")));
+        }
     }
     let point = point(raw.point).map_err(|problem| error(raw.at.span().start, problem))?;
     Ok(Reflector { point, at })

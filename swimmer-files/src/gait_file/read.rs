@@ -6,7 +6,7 @@ use std::str::FromStr;
 use nalgebra::Vector2;
 
 use super::{Bounds, GaitArc, GaitFile};
-use crate::FileError;
+use crate::{FileError, Quantity};
 
 const FIRST_LINE: &str = "# swimmer gait file, version ";
 const COLUMNS: &str = "u,phi1,phi2";
@@ -37,7 +37,7 @@ impl Line<'_> {
 
     fn joint_angle(&self, part: &str) -> Result<f64, FileError> {
         let value = self.number(part)?;
-        if !crate::angle::looks_like_degrees(value) {
+        if Quantity::Angle.checked(value).is_ok() {
             return Ok(value);
         }
         let problem = format!(

@@ -8,7 +8,7 @@ use swimmer_model::{Links, Swimmer, TangentialDrag};
 use toml::Spanned;
 
 use super::{Fluid, ServoFile, SwimmerFile};
-use crate::FileError;
+use crate::{FileError, Quantity};
 
 type Number = Spanned<f64>;
 
@@ -98,6 +98,17 @@ impl Source<'_> {
         }
     }
 
+    /// Reads a positive number of a quantity, and refuses a slip of its unit.
+    fn quantity(&self, key: &str, number: &Number, quantity: Quantity) -> Result<f64, FileError> {
+        let value = self.positive(key, number)?;
+        let slip = |slip: crate::Slip| self.error(&number.span(), slip.of_key(key));
+        quantity.checked(value).map_err(slip)
+    }
+
+    fn length(&self, key: &str, number: &Number) -> Result<f64, FileError> {
+        self.quantity(key, number, Quantity::Length)
+    }
+
     /// Refuses a number that can only be degrees where radians are read.
     fn radians(&self, key: &str, number: Option<&Number>, limit: f64) -> Result<(), FileError> {
         let Some(number) = number.filter(|number| number.get_ref().abs() > limit) else {
@@ -155,16 +166,15 @@ pub(super) fn swimmer_file(text: &str, path: &Path) -> Result<SwimmerFile, FileE
 
 fn links(source: &Source<'_>, raw: &Spanned<RawLinks>) -> Result<Links<f64>, FileError> {
     let table = raw.get_ref();
-    let middle = source.positive("middle", &table.middle)?;
+    let middle = source.length("middle", &table.middle)?;
     let (front, back) = match (&table.side, &table.front, &table.back) {
         (Some(side), None, None) => {
-            let side = source.positive("side", side)?;
+            let side = source.length("side", side)?;
             (side, side)
         }
-        (None, Some(front), Some(back)) => (
-            source.positive("front", front)?,
-            source.positive("back", back)?,
-        ),
+        (None, Some(front), Some(back)) => {
+            (source.length("front", front)?, source.length("back", back)?)
+        }
         _ => {
             let problem =
                 "[links] needs `side` (both side links alike) or `front` and `back`, not a mixture";
@@ -227,12 +237,16 @@ fn servo(source: &Source<'_>, raw: &RawServo) -> Result<ServoFile, FileError> {
             .map_or(Ok(standard), |number| source.positive(key, number))
     };
     for (key, number, limit) in [
-        ("max_angle", &raw.max_angle, std::f64::consts::TAU),
         ("dead_band", &raw.dead_band, LARGEST_DEAD_BAND),
         ("slope_rad_per_us", &raw.slope_rad_per_us, LARGEST_SLOPE),
     ] {
         source.radians(key, number.as_ref(), limit)?;
     }
+    let quantity = |key: &str, number: &Option<Number>, quantity: Quantity, standard: f64| {
+        number.as_ref().map_or(Ok(standard), |number| {
+            source.quantity(key, number, quantity)
+        })
+    };
     let known = |key: &str, number: &Option<Number>| {
         let number = number.as_ref();
         number
@@ -240,16 +254,20 @@ fn servo(source: &Source<'_>, raw: &RawServo) -> Result<ServoFile, FileError> {
             .transpose()
     };
     Ok(ServoFile {
-        max_angle: positive("max_angle", &raw.max_angle, max_angle)?,
-        max_rate: positive("max_rate", &raw.max_rate, max_rate)?,
+        max_angle: quantity("max_angle", &raw.max_angle, Quantity::Angle, max_angle)?,
+        max_rate: quantity("max_rate", &raw.max_rate, Quantity::Rate, max_rate)?,
         dead_band: match &raw.dead_band {
             Some(number) => source.not_negative("dead_band", number)?,
             None => dead_band,
         },
         slope_rad_per_us: positive("slope_rad_per_us", &raw.slope_rad_per_us, slope_rad_per_us)?,
-        centre_us: positive("centre_us", &raw.centre_us, centre_us)?,
+        centre_us: quantity("centre_us", &raw.centre_us, Quantity::Pulse, centre_us)?,
         torque: known("torque_n_m", &raw.torque_n_m)?,
-        no_load_rate: known("no_load_rate", &raw.no_load_rate)?,
+        no_load_rate: raw
+            .no_load_rate
+            .as_ref()
+            .map(|number| source.quantity("no_load_rate", number, Quantity::Rate))
+            .transpose()?,
     })
 }
 

@@ -7,6 +7,7 @@ use gait_player::servo::ServoMap;
 use host_link::{LinkError, Robot};
 use link_protocol::{Joint, PulseRange, Refusal, ServoSettings};
 use serde::Serialize;
+use swimmer_files::Quantity;
 
 use super::access::Access;
 use super::port::{AnyPort, Pace};
@@ -28,7 +29,7 @@ pub(super) struct Servo {
     #[arg(long, value_enum, value_name = "+|-", allow_hyphen_values = true)]
     sign: Option<Sign>,
     /// Pulse of the straight joint, µs
-    #[arg(long, value_name = "US", value_parser = pulse_us)]
+    #[arg(long, value_name = "US", value_parser = centre_us)]
     centre: Option<f64>,
     /// How far a µs of pulse turns it, as 1.57deg, or bare in radians
     #[arg(long, value_name = "ANGLE", value_parser = positive_angle)]
@@ -77,6 +78,14 @@ pub(super) fn name_of(joint: Joint) -> &'static str {
     }
 }
 
+/// The pulse of a straight joint on the command line, in microseconds.
+pub(crate) fn centre_us(text: &str) -> Result<f64, String> {
+    let number = text.trim().trim_end_matches("us").trim_end_matches("µs");
+    let us = f64::from_str(number).ok().filter(|us| us.is_finite());
+    let us = us.ok_or("write a servo's pulse in µs, as 1500")?;
+    Quantity::Pulse.checked(us).map_err(|slip| slip.to_string())
+}
+
 /// A pulse on the command line, in microseconds.
 pub(crate) fn pulse_us(text: &str) -> Result<f64, String> {
     f64::from_str(text.trim().trim_end_matches("us").trim_end_matches("µs"))
@@ -96,7 +105,7 @@ fn range_us(text: &str) -> Result<RangeUs, String> {
 
 /// Whole nanoseconds of a pulse that was checked.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // some ms
-pub(super) fn nanoseconds(us: f64) -> u32 {
+pub(crate) fn nanoseconds(us: f64) -> u32 {
     (us * 1e3).round() as u32
 }
 

@@ -30,13 +30,16 @@ const LARGEST_RAD: f64 = 0.524;
 
 /// A trim on the command line, in radians.
 pub(super) fn angle_of_trim(text: &str) -> Result<f64, String> {
-    let angle = angle(text)?;
+    // A trim is held to a narrower range than other bare angles.
+    let bare = f64::from_str(text.trim()).ok();
+    let bare = bare.filter(|bare| bare.is_finite());
+    let angle = bare.map_or_else(|| angle(text), Ok)?;
     if angle.abs() <= LARGEST_RAD {
         return Ok(angle);
     }
     // Only a number without its unit may have been meant in degrees.
-    let meant = match f64::from_str(text.trim()) {
-        Ok(degrees) if degrees.to_radians().abs() <= LARGEST_RAD => {
+    let meant = match bare {
+        Some(degrees) if degrees.to_radians().abs() <= LARGEST_RAD => {
             format!("write degrees as {degrees}deg, or ")
         }
         _ => String::new(),

@@ -4,6 +4,8 @@ use std::str::FromStr;
 
 use gait_player::servo::ServoMap;
 
+use crate::commands::robot::servo::{centre_us, nanoseconds};
+
 /// What sets one servo apart from those as built.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Servo {
@@ -47,7 +49,7 @@ pub(super) fn servo(text: &str) -> Result<Servo, String> {
         match (key.trim(), value.trim()) {
             ("sign", "-") => servo.reversed = Some(true),
             ("sign", "+") => servo.reversed = Some(false),
-            ("centre", us) => servo.centre_ns = Some(pulse_ns(us)?),
+            ("centre", us) => servo.centre_ns = Some(nanoseconds(centre_us(us)?)),
             ("slope", slope) => {
                 let slope = f32::from_str(slope).ok();
                 let turns = slope.filter(|slope| (1e-4..1.0).contains(slope));
@@ -58,15 +60,6 @@ pub(super) fn servo(text: &str) -> Result<Servo, String> {
         }
     }
     Ok(servo)
-}
-
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // some ms
-fn pulse_ns(us: &str) -> Result<u32, String> {
-    f64::from_str(us)
-        .ok()
-        .filter(|us| (500.0..=2500.0).contains(us))
-        .map(|us| (us * 1e3).round() as u32)
-        .ok_or_else(|| "a centre is a pulse in µs, as 1512".to_owned())
 }
 
 #[cfg(test)]
