@@ -291,6 +291,8 @@ impl World {
         self.receive(&frame(0, 0, &Message::Hello(hello)));
         let session = &self.brain.session;
         if session.number() != before {
+            // The same greeting again opens another session after a key was set.
+            self.asked = false;
             let binding = Binding {
                 boot_nonce: session.boot_nonce(),
                 session: session.number(),
