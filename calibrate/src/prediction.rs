@@ -15,7 +15,7 @@ use gait_player::servo::ServoMap;
 use gait_player::servo::plant::PlantParameters;
 use gait_player::table::TableError;
 use nalgebra::Vector2;
-use swimmer_files::{AnyGait, ServoFile, SwimmerFile};
+use swimmer_files::{AnyGait, ServoFile, SwimmerFile, UnplayablePeriod, check_playable_period};
 use swimmer_model::{Gait, InvalidSwimmer, Model, Pose, Swimmer, Tolerance, trajectory};
 
 use crate::cycles::{self, Curve, Harmonics, Projection};
@@ -46,12 +46,9 @@ pub enum PredictionError {
         /// The servos' \[rad\].
         max_angle: f64,
     },
-    /// The period is no time.
-    #[error("a period of {period_s} s is not playable; give 0.1 s to 4000 s")]
-    Period {
-        /// The period \[s\].
-        period_s: f64,
-    },
+    /// No robot plays cycles of this period.
+    #[error(transparent)]
+    Period(#[from] UnplayablePeriod),
 }
 
 /// A predicted cycle, in the frame of its first heading.
@@ -330,9 +327,7 @@ fn played(
     servo: &ServoFile,
     period_s: f64,
 ) -> Result<Vec<(f64, Vector2<f64>)>, PredictionError> {
-    if !(0.1..=4000.0).contains(&period_s) {
-        return Err(PredictionError::Period { period_s });
-    }
+    check_playable_period(period_s)?;
     let table = forecast::table(gait, KNOTS)?;
     let angle = (0..KNOTS)
         .map(|knot| gait.at(knot as f64 / KNOTS as f64).phi.amax())
@@ -462,7 +457,7 @@ mod tests {
         ));
         assert!(matches!(
             predict(&file(Some(small)), &AnyGait::circle(0.5), 1e9),
-            Err(PredictionError::Period { .. })
+            Err(PredictionError::Period(_))
         ));
         assert!(matches!(
             predict(&file(Some(small)), &AnyGait::circle(4.0), 30.0),

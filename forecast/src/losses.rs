@@ -13,7 +13,7 @@ mod stages;
 
 use gait_player::table::TableError;
 use nalgebra::Vector2;
-use swimmer_files::ServoFile;
+use swimmer_files::{ServoFile, UnplayablePeriod, check_playable_period};
 use swimmer_model::{Gait, InvalidSamples, Model, Tolerance};
 
 use crate::path::Polyline;
@@ -54,12 +54,9 @@ pub enum ForecastError {
         /// The servos' largest angle \[rad\].
         max_angle: f64,
     },
-    /// The period is no time.
-    #[error("a period of {period} s is not playable; give 0.1 s to 4000 s")]
-    Period {
-        /// The period \[s\].
-        period: f64,
-    },
+    /// No robot plays cycles of this period.
+    #[error(transparent)]
+    Period(#[from] UnplayablePeriod),
     /// The servos' numbers are none.
     #[error("the servos' {name} is {value}; {problem}")]
     Servo {
@@ -235,11 +232,7 @@ impl Played {
     }
 
     fn validate(&self) -> Result<(), ForecastError> {
-        if !(0.1..=4000.0).contains(&self.period) {
-            return Err(ForecastError::Period {
-                period: self.period,
-            });
-        }
+        check_playable_period(self.period)?;
         let ServoFile {
             max_angle,
             max_rate,

@@ -40,6 +40,7 @@ mod gait_spec;
 mod hash;
 mod key;
 mod link_log;
+mod period;
 mod place;
 mod playlist;
 mod provenance;
@@ -62,6 +63,7 @@ pub use link_log::{
     LinkFrame, LinkLog, LinkLogError, LinkLogWriter, Play, link_log_bytes, parse_link_log, plays,
     read_link_log,
 };
+pub use period::{UnplayablePeriod, check_playable_period};
 pub use place::FileError;
 pub use playlist::{Playlist, PlaylistStep};
 pub use provenance::{InputHash, Provenance, hash_of};

@@ -9,7 +9,9 @@ use swimmer_model::Gait as _;
 use toml::Spanned;
 
 use crate::place::read_text;
-use crate::{AnyGait, FileError, GaitFile, GaitSpec, SwimmerHash, write_atomically};
+use crate::{
+    AnyGait, FileError, GaitFile, GaitSpec, SwimmerHash, check_playable_period, write_atomically,
+};
 
 /// The version that is written, and the only one that is read.
 const VERSION: u32 = 1;
@@ -18,8 +20,6 @@ const FORMAT: &str = "swimmer playlist";
 const JOINED: f64 = 1e-5;
 /// Steps, and cycles of one: so many seconds of them are more than a month.
 const MOST: u32 = 1_000_000;
-/// Durations of a cycle that a robot can play \[s\].
-const PERIODS: std::ops::RangeInclusive<f64> = 0.1..=4000.0;
 
 /// Gaits to be played one after the other.
 ///
@@ -224,10 +224,8 @@ fn read_step(
             error(raw.cycles.span().start, problem)
         })?;
     let period = *raw.period_s.get_ref();
-    if !PERIODS.contains(&period) {
-        let problem = format!("a period of {period} s is not playable; give 0.1 s to 4000 s");
-        return Err(error(raw.period_s.span().start, problem));
-    }
+    check_playable_period(period)
+        .map_err(|refused| error(raw.period_s.span().start, refused.to_string()))?;
     Ok(PlaylistStep {
         gait,
         curve,
