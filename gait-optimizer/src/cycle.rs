@@ -48,19 +48,12 @@ pub(crate) struct Samples {
 impl Cycle {
     /// The same cycle run backwards, each shape as `image` maps it.
     pub(crate) fn reversed(&self, image: impl Fn(&Vector2<f64>) -> Vector2<f64>) -> Self {
-        let back = |u: f64| if u > 0.0 { 1.0 - u } else { 0.0 };
-        let mut corners: Vec<f64> = self.corners.iter().map(|&corner| back(corner)).collect();
-        corners.sort_by(f64::total_cmp);
-        let arcs = self.arcs.iter().rev().map(|arc| GaitArc {
-            kind: arc.kind,
-            from: 1.0 - arc.to,
-            to: 1.0 - arc.from,
-        });
+        let back = self.file(Bounds::default()).reversed();
         Self {
-            u: self.u.iter().rev().map(|u| 1.0 - u).collect(),
-            phi: self.phi.iter().rev().map(image).collect(),
-            corners,
-            arcs: arcs.collect(),
+            u: back.u,
+            phi: back.phi.iter().map(image).collect(),
+            corners: back.corners,
+            arcs: back.arcs,
         }
     }
 
