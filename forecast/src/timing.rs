@@ -28,7 +28,7 @@ mod table;
 
 use nalgebra::Vector2;
 use swimmer_files::{GaitArc, GaitFile};
-use swimmer_model::{Gait, GaitPoint, Model};
+use swimmer_model::{GaussLegendre, Gait, GaitPoint, Model};
 
 pub use error::TimingError;
 use error::{check_period, check_rate};
@@ -36,14 +36,9 @@ pub use table::{shortest_of_table, timing_of_table};
 
 /// Cells of a cycle, at least; those of a sampled gait end at its samples.
 const CELLS: f64 = 2048.0;
-/// Gauss–Legendre rule of four points on \[0, 1\], used in every cell: where the cap sets in within a cell, the integral is
-/// off by the square of the cell's width, 1e-7 of the period.
-const RULE: [(f64, f64); 4] = [
-    (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
-    (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
-    (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
-    (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
-];
+/// Quadrature in every cell. If the cap sets in within a cell, the integral is off by the square of the cell's width, 1e-7 of
+/// the period.
+type Rule = GaussLegendre<4>;
 /// Newton's steps on a convex, piecewise linear function end by themselves; this only bounds them.
 const STEPS: usize = 200;
 
@@ -300,7 +295,11 @@ fn points<G: Gait<f64> + ?Sized>(
     cuts: &[f64],
 ) -> impl Iterator<Item = [(f64, GaitPoint<f64>); 4]> {
     cuts.array_windows().map(|[start, end]| {
-        RULE.map(|(at, weight)| (weight * (end - start), gait.at(start + at * (end - start))))
+        let half = 0.5 * (end - start);
+        std::array::from_fn(|i| {
+            let place = start + half * (1.0 + Rule::NODES[i]);
+            (half * Rule::WEIGHTS[i], gait.at(place))
+        })
     })
 }
 

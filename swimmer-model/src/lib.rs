@@ -43,6 +43,7 @@ mod derivatives;
 mod drag;
 mod force;
 pub mod gait;
+mod gauss_legendre;
 mod heading;
 mod model;
 mod outline;
@@ -60,6 +61,7 @@ pub use gait::{
     Circle, Fourier, Gait, GaitPoint, Harmonic, InvalidSamples, Reversed, Sampled, Square,
     SymmetricFourier,
 };
+pub use gauss_legendre::GaussLegendre;
 pub use heading::{FullFirstDerivatives, FullSecondDerivatives};
 pub use model::Model;
 pub use pose::{Pose, wrapped_angle};

@@ -7,7 +7,7 @@ mod mesh;
 
 use nalgebra::{DMatrix, DVector, Vector2};
 use swimmer_files::Bounds;
-use swimmer_model::Model;
+use swimmer_model::{GaussLegendre, Model};
 
 use super::Subject;
 use super::grid::Node;
@@ -27,8 +27,11 @@ pub(super) struct Neighbours<'a> {
     pub(super) symmetric: bool,
 }
 
-/// Where the elements of a part are looked at, each half of it (Gauss's rule).
-const PLACES: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
+/// Gauss points of a part, which is one unit long.
+const PLACES: [f64; 2] = {
+    let [first, last] = GaussLegendre::<2>::NODES;
+    [0.5 + 0.5 * first, 0.5 + 0.5 * last]
+};
 /// Places this close in u are the same.
 const SAME: f64 = 1e-9;
 /// Curvatures below this part of the largest are not told from zero. Where effort counts the largest is that of the narrowest push,

@@ -3,6 +3,8 @@
 //! A certificate must see slopes of a curve that is known by its samples only. Polynomials of two degrees give each slope
 //! twice, and their difference tells how much of it the sampling leaves open.
 
+use swimmer_model::GaussLegendre;
+
 /// Samples that the finer polynomial takes.
 pub(super) const MOST: usize = 9;
 /// How many fewer the coarser one takes.
@@ -48,16 +50,10 @@ pub(super) fn derivatives<const ORDERS: usize>(places: &[f64], at: f64) -> [Weig
 /// Integral of the same polynomial from one place to another, exactly.
 pub(super) fn integral(places: &[f64], from: f64, to: f64) -> Weights {
     // Gauss–Legendre with five points is exact to degree nine.
-    const RULE: [(f64, f64); 5] = [
-        (-0.906_179_845_938_664, 0.236_926_885_056_189_08),
-        (-0.538_469_310_105_683_1, 0.478_628_670_499_366_47),
-        (0.0, 0.568_888_888_888_888_9),
-        (0.538_469_310_105_683_1, 0.478_628_670_499_366_47),
-        (0.906_179_845_938_664, 0.236_926_885_056_189_08),
-    ];
+    type Rule = GaussLegendre<5>;
     let (middle, half) = (f64::midpoint(from, to), 0.5 * (to - from));
     let mut sum = [0.0; MOST];
-    for (place, weight) in RULE {
+    for (place, weight) in Rule::NODES.into_iter().zip(Rule::WEIGHTS) {
         let [value] = derivatives(places, middle + half * place);
         for (total, part) in sum.iter_mut().zip(value) {
             *total += half * weight * part;

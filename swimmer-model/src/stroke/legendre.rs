@@ -1,22 +1,12 @@
-//! Polynomials on a panel: Gauss–Legendre nodes, Legendre series through values at the nodes, their exact integrals.
+//! Polynomials on a panel: Legendre series through values at Gauss–Legendre nodes, and their exact integrals.
 
-use crate::Scalar;
+use crate::{GaussLegendre, Scalar};
 
 /// Most nodes of a panel. A rule of N nodes integrates polynomials of degree 2N − 1 exactly.
 pub(super) const N: usize = 12;
 
-/// A rule of M nodes, M even and at most [`N`].
+/// A rule of M nodes, at most [`N`].
 pub(super) struct Rule<const M: usize>;
-
-/// The positive roots of P₈ and P₁₂ to six digits; Newton's method does the rest when the crate is compiled.
-const ROOTS_8: [f64; 4] = [0.183_435, 0.525_532, 0.796_666, 0.960_290];
-const ROOTS_12: [f64; 6] = [
-    0.125_233, 0.367_831, 0.587_318, 0.769_903, 0.904_117, 0.981_561,
-];
-
-const fn near_root(nodes: usize, i: usize) -> f64 {
-    if nodes == 8 { ROOTS_8[i] } else { ROOTS_12[i] }
-}
 
 /// P₀(x) … P_N(x).
 const fn legendre(x: f64) -> [f64; N + 1] {
@@ -31,39 +21,17 @@ const fn legendre(x: f64) -> [f64; N + 1] {
     p
 }
 
-/// P′_M(x).
-const fn slope(m: usize, x: f64) -> f64 {
-    let p = legendre(x);
-    m as f64 * (p[m - 1] - x * p[m]) / (1.0 - x * x)
-}
-
 impl<const M: usize> Rule<M> {
     /// Nodes on [−1, 1], increasing.
-    pub(super) const NODES: [f64; M] = {
-        let mut nodes = [0.0; M];
-        let mut i = 0;
-        while i < M / 2 {
-            let mut x = near_root(M, i);
-            let mut step = 0;
-            while step < 4 {
-                x -= legendre(x)[M] / slope(M, x);
-                step += 1;
-            }
-            nodes[M / 2 + i] = x;
-            nodes[M / 2 - 1 - i] = -x;
-            i += 1;
-        }
-        nodes
-    };
+    pub(super) const NODES: [f64; M] = GaussLegendre::<M>::NODES;
 
     /// Row k turns values at the nodes into the coefficient of P_k.
     const PROJECT: [[f64; M]; M] = {
         let mut rows = [[0.0; M]; M];
         let mut j = 0;
         while j < M {
-            let x = Self::NODES[j];
-            let p = legendre(x);
-            let weight = 2.0 / ((1.0 - x * x) * slope(M, x) * slope(M, x));
+            let p = legendre(Self::NODES[j]);
+            let weight = GaussLegendre::<M>::WEIGHTS[j];
             let mut k = 0;
             while k < M {
                 rows[k][j] = (k as f64 + 0.5) * weight * p[k];
