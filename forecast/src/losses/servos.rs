@@ -3,6 +3,7 @@
 use gait_player::Limits;
 use gait_player::servo::ServoMap;
 use gait_player::servo::plant::PlantParameters;
+use link_protocol::{Board, Configuration, HelloReply};
 use swimmer_files::ServoFile;
 
 /// The servos that shall play a gait.
@@ -26,17 +27,19 @@ impl Servos {
         }
     }
 
-    /// The same servos within what a robot allows them: its largest angle \[rad\] and rate \[rad/s\], the decimal numbers that it was
-    /// told in single precision.
-    #[must_use]
-    pub fn within(self, max_angle: f32, max_rate: f32) -> Self {
+    /// These servos on a robot that reported `hello` and is configured so: within the limits of both, and behind its board's
+    /// timer. The robot holds its limits in single precision; they become the decimal numbers that were meant.
+    pub fn on_robot(file: ServoFile, hello: &HelloReply, configuration: &Configuration) -> Self {
         Self {
             file: ServoFile {
-                max_angle: decimal(max_angle),
-                max_rate: decimal(max_rate),
-                ..self.file
+                max_angle: decimal(configuration.max_angle.min(hello.limits.max_angle)),
+                max_rate: decimal(configuration.max_rate.min(hello.limits.max_rate)),
+                ..file
             },
-            ..self
+            pulse_step_ns: match hello.board {
+                Board::Twin => 0,
+                Board::NanoRp2040Connect | Board::Pico => Self::ROBOT_PULSE_STEP_NS,
+            },
         }
     }
 

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use forecast::{Forecast, Meeting, Played, Servos, Tank, forecast, until_wall};
-use link_protocol::{ANGLE_UNIT_RAD, Board, Configuration, HelloReply, MAX_KNOTS, TangentialDrag};
+use link_protocol::{ANGLE_UNIT_RAD, Configuration, HelloReply, MAX_KNOTS, TangentialDrag};
 use nalgebra::Vector2;
 use serde::Serialize;
 use swimmer_files::{AnyGait, SwimmerFile};
@@ -77,7 +77,6 @@ impl Player {
         file: Option<&SwimmerFile>,
     ) -> Self {
         let told = file.and_then(|file| file.servo);
-        let servo = told.unwrap_or_default();
         let (name, swimmer) = match file {
             Some(file) => (file.name.clone(), file.swimmer),
             None => configured(configuration),
@@ -85,17 +84,7 @@ impl Player {
         Self {
             name,
             swimmer,
-            servos: Servos {
-                file: servo,
-                pulse_step_ns: match hello.board {
-                    Board::Twin => 0,
-                    Board::NanoRp2040Connect | Board::Pico => Servos::ROBOT_PULSE_STEP_NS,
-                },
-            }
-            .within(
-                configuration.max_angle.min(hello.limits.max_angle),
-                configuration.max_rate.min(hello.limits.max_rate),
-            ),
+            servos: Servos::on_robot(told.unwrap_or_default(), hello, configuration),
             assumed: told.is_none(),
         }
     }

@@ -1,7 +1,7 @@
 //! What the robot will make of a gait, told before it is sent, as `swimmer robot upload` tells it.
 
 use forecast::{Played, Servos, forecast};
-use link_protocol::{Board, Configuration, HelloReply, MAX_KNOTS};
+use link_protocol::{Configuration, HelloReply, MAX_KNOTS};
 use serde::Deserialize;
 use serde_json::{Value, json};
 use twin::is_configured_as;
@@ -31,23 +31,13 @@ struct Connected {
 pub(super) fn preflight(_lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let asked: Asked = parsed(bytes)?;
     let (file, model) = asked.swimmer.model()?;
-    let servos = Servos::on_the_robot(file.servo.unwrap_or_default());
+    let servo = file.servo.unwrap_or_default();
     let servos = match &asked.robot {
-        None => servos,
+        None => Servos::on_the_robot(servo),
         Some(Connected {
             hello,
             configuration,
-        }) => Servos {
-            pulse_step_ns: match hello.board {
-                Board::Twin => 0,
-                Board::NanoRp2040Connect | Board::Pico => Servos::ROBOT_PULSE_STEP_NS,
-            },
-            ..servos
-        }
-        .within(
-            configuration.max_angle.min(hello.limits.max_angle),
-            configuration.max_rate.min(hello.limits.max_rate),
-        ),
+        }) => Servos::on_robot(servo, hello, configuration),
     };
     let played = Played {
         servos,
