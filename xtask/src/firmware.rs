@@ -2,13 +2,13 @@
 
 use std::process::Command;
 
-use crate::binary_info::Pieces;
+use firmware_image::{BinaryInfo, Flash};
+
 use crate::disk::{make_folder, read_bytes, write};
 use crate::failure::{Failure, Outcome};
 use crate::image::Image;
 use crate::run::{command, run, target_folder, works};
 use crate::toolchain::{Target, Toolchain};
-use crate::uf2;
 
 /// Read by `firmware/src/battery.rs`.
 const DIVIDER: &str = "SWIMMER_BATTERY_DIVIDER_MILLI";
@@ -93,11 +93,12 @@ pub(crate) fn build(toolchain: &Toolchain, variant: Variant) -> Outcome {
     let elf = target.join(Target::Chip.triple()).join("firmware/firmware");
     let bytes = read_bytes(&elf)?;
     let image = Image::from_elf(&bytes)?;
-    let info = Pieces(&image.flash).binary_info()?;
+    let flash = Flash::from_segments(image.flash);
+    let info = complete(flash.binary_info())?;
     let images = target.join("firmware-images");
     make_folder(&images)?;
     let name = format!("swimmer-{}", variant.name());
-    for (ending, content) in [("elf", &bytes), ("uf2", &uf2::from_segments(image.flash))] {
+    for (ending, content) in [("elf", &bytes), ("uf2", &flash.to_uf2())] {
         let path = images.join(&name).with_extension(ending);
         write(&path, content)?;
         println!("{}", path.display());
@@ -105,6 +106,18 @@ pub(crate) fn build(toolchain: &Toolchain, variant: Variant) -> Outcome {
     println!("{}: {info}", variant.name());
     println!("{}: {}", variant.name(), image.footprint);
     image.footprint.check()
+}
+
+/// Refuses binary information that lacks a string, as an image has if the linker script drops the section.
+fn complete(info: BinaryInfo) -> Outcome<BinaryInfo> {
+    if info.program.is_some() && info.version.is_some() && info.board.is_some() {
+        return Ok(info);
+    }
+    Err(Failure::new(
+        "reading the firmware's binary info",
+        format!("it is not complete where picotool looks: {info}"),
+        "see that memory.x keeps .boot_info and .bi_entries, which firmware/src/binary_info.rs fills",
+    ))
 }
 
 /// Builds and flashes one board through a debug probe, then shows its log.

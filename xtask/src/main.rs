@@ -1,7 +1,6 @@
 //! The project's own chores, so that no one has to remember a command line: `cargo xtask --help` lists them.
 
 mod bench;
-mod binary_info;
 mod book;
 mod check;
 mod debian;
@@ -22,7 +21,6 @@ mod soak;
 mod steps;
 mod toolchain;
 mod tools;
-mod uf2;
 
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -2,16 +2,15 @@
 //! which comes up as a drive; the image is copied onto that.
 
 mod drive;
-mod image;
 
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use firmware_image::{BinaryInfo, Flash as FlashMemory};
 use link_protocol::{Board, StateName};
 use serde::Serialize;
 
-use self::image::Image;
 use super::access::Access;
 use super::answers::state;
 use super::info::board;
@@ -66,11 +65,11 @@ impl fmt::Display for Flashed {
     }
 }
 
-/// An image that was read and looked into.
+/// An image of this robot's firmware.
 struct Checked {
     file: PathBuf,
     bytes: Vec<u8>,
-    image: Image,
+    info: BinaryInfo,
 }
 
 /// `swimmer robot flash`.
@@ -106,8 +105,8 @@ pub(super) fn run(access: &Access, arguments: &Flash, output: Output) -> Outcome
     })?;
     output.answer(&Flashed {
         file: checked.file.display().to_string(),
-        board: checked.image.board().map(board),
-        version: checked.image.version,
+        board: checked.board().map(board),
+        version: checked.info.version,
         drive: drive.display().to_string(),
         bytes: checked.bytes.len(),
     });
@@ -132,19 +131,29 @@ impl Checked {
                 file.display()
             ))
         })?;
-        let image = Image::of_uf2(&bytes)
-            .map_err(|problem| Failure::BadInput(format!("{}: {problem}", file.display())))?;
-        if !image.is_ours() {
+        let info = FlashMemory::from_uf2(&bytes)
+            .map_err(|problem| Failure::BadInput(format!("{}: {problem}", file.display())))?
+            .binary_info();
+        if info.program.as_deref() != Some("swimmer") {
             return Err(Failure::BadInput(format!(
-                "{} is no firmware of this robot ({image}); `cargo xtask firmware` builds it into {IMAGES}",
+                "{} is no firmware of this robot ({info}); `cargo xtask firmware` builds it into {IMAGES}",
                 file.display()
             )));
         }
         Ok(Self {
             file: file.to_owned(),
             bytes,
-            image,
+            info,
         })
+    }
+
+    /// Returns the board that it was built for, or `None` if it names none that this robot may have.
+    fn board(&self) -> Option<Board> {
+        match self.info.board.as_deref()? {
+            "pico" => Some(Board::Pico),
+            "arduino_nano_rp2040_connect" => Some(Board::NanoRp2040Connect),
+            _ => None,
+        }
     }
 }
 
@@ -156,11 +165,11 @@ fn into_the_boot_loader(access: &Access, named: Option<Checked>) -> Outcome<Chec
         Some(checked) => checked,
         None => Checked::read(&built_for(of_robot)?)?,
     };
-    if checked.image.board() != Some(of_robot) {
+    if checked.board() != Some(of_robot) {
         return Err(Failure::BadInput(format!(
             "{} is for another board ({}) than this robot's, a {}; its pins would not fit",
             checked.file.display(),
-            checked.image,
+            checked.info,
             board(of_robot)
         )));
     }
