@@ -11,7 +11,7 @@ use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::time::Duration;
 
-use host_link::port::Character;
+use host_link::testing::Character;
 use serde_json::{Value, json};
 
 use crate::events::{Answer, Events, Stack, nanos};
@@ -152,7 +152,7 @@ impl Board {
         self.perform(&json!({ "do": "feed_usb", "bytes": bytes }))
     }
 
-    /// The same as [`Self::feed`] with what a UART can find wrong with each: see [`heard`](host_link::port::heard) for a wrong baud rate.
+    /// The same as [`Self::feed`] with what a UART can find wrong with each: see [`heard`](host_link::testing::heard) for a wrong baud rate.
     ///
     /// # Errors
     /// As [`Self::run`].

@@ -28,7 +28,7 @@ mod table;
 
 use nalgebra::Vector2;
 use swimmer_files::{GaitArc, GaitFile};
-use swimmer_model::{GaussLegendre, Gait, GaitPoint, Model};
+use swimmer_model::{Gait, GaitPoint, GaussLegendre, Model};
 
 pub use error::TimingError;
 use error::{check_period, check_rate};

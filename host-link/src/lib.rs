@@ -1,5 +1,5 @@
-//! The host end of the wire: ports (serial, pseudo-terminal, TCP, in memory, with faults, with a witness), the session, and
-//! a blocking [`Robot`] over any of them.
+//! The host end of the wire: ports (serial, pseudo-terminal, TCP, virtual), the session, and a blocking [`Robot`] over any of
+//! them.
 //!
 //! A state machine without I/O ([`session::Session`]) decides; the shell ([`Robot`]) moves its bytes.
 //!
@@ -26,6 +26,8 @@ pub mod hc05;
 pub mod port;
 pub mod robot;
 pub mod session;
+#[cfg(any(test, feature = "testing"))]
+pub mod testing;
 
 pub use port::Port;
 pub use robot::{Robot, StoppedBy};

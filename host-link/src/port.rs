@@ -5,16 +5,11 @@
 //!
 //! The ports of an operating system are left out where there is none (WebAssembly in a browser).
 
-mod baud;
 #[cfg(unix)]
 mod beside;
-mod faults;
-mod faulty;
 mod frames;
-mod injector;
 #[cfg(not(target_family = "wasm"))]
 mod listed;
-mod mock;
 #[cfg(unix)]
 mod pty;
 #[cfg(not(target_family = "wasm"))]
@@ -27,15 +22,11 @@ mod wire;
 use std::io;
 use std::time::Duration;
 
-pub use baud::{Character, heard};
 #[cfg(unix)]
 pub use beside::BesidePort;
-pub use faults::{Faults, FaultsError, FaultsProblem, Outage};
-pub use faulty::{FaultPlan, FaultyPort};
-pub use injector::{FaultCounts, FaultInjector};
+pub(crate) use frames::FrameCutter;
 #[cfg(not(target_family = "wasm"))]
 pub use listed::{ListedPort, serial_ports};
-pub use mock::MockPort;
 #[cfg(unix)]
 pub use pty::{PtyError, PtyPort};
 #[cfg(not(target_family = "wasm"))]

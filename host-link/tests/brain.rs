@@ -6,8 +6,8 @@ mod tank_less;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use host_link::port::{FaultPlan, FaultyPort, Outage};
 use host_link::robot::time_left;
+use host_link::testing::{FaultPlan, FaultyPort, Outage};
 use host_link::{LinkError, Port, Robot};
 use link_protocol::{StateName, StopCause};
 use tank_less::{Line, circle, configuration, connect, faulty, upload};
@@ -119,7 +119,7 @@ fn stops_act_through_a_fifth_of_all_frames_lost() {
 
 /// Puts faults on a line that was clean, with the session as it is.
 fn spoil(robot: Robot<Line>, faults: &str, seed: u64) -> Robot<FaultyPort<Line>> {
-    use host_link::port::FaultPlan;
+    use host_link::testing::FaultPlan;
     robot.map_port(|port| FaultyPort::new(port, FaultPlan::at_host(faults.parse().unwrap()), seed))
 }
 

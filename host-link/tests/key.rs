@@ -9,8 +9,9 @@ use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use host_link::port::{FaultPlan, Faults, TracedFrame, TracedPort};
+use host_link::port::{TracedFrame, TracedPort};
 use host_link::session::SessionConfig;
+use host_link::testing::{FaultPlan, Faults};
 use host_link::{LinkError, Port, Robot};
 use link_protocol::{
     Binding, Direction, Flags, Header, Key, MAX_ENCODED, Message, Seal, StateName, Telemetry,

@@ -8,7 +8,8 @@ use std::fmt::Write as _;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use host_link::port::{FaultPlan, Faults, FaultyPort, VirtualPort, WireSpeed};
+use host_link::port::{VirtualPort, WireSpeed};
+use host_link::testing::{FaultPlan, Faults, FaultyPort};
 use host_link::{Port, Robot};
 use tank_less::{circle, faulty};
 

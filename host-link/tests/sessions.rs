@@ -8,7 +8,7 @@ mod tank_less;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use host_link::port::{FaultPlan, Faults, Outage};
+use host_link::testing::{FaultPlan, Faults, Outage};
 use host_link::{LinkError, Port, Robot};
 use link_protocol::{StateName, crc32c};
 use rand::{RngExt, SeedableRng};

@@ -13,7 +13,7 @@ use std::time::Duration;
 
 use gait_player::GaitTable;
 use haste::fill;
-use host_link::port::{FaultPlan, Faults};
+use host_link::testing::{FaultPlan, Faults};
 use host_link::{Port, Robot as HostRobot, StoppedBy};
 use link_protocol::{StateName, StopCause};
 use tank_less::{Line, circle, faulty};

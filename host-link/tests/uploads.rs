@@ -6,8 +6,8 @@ mod tank_less;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use host_link::port::Outage;
 use host_link::session::{LinkCounters, UploadPhase};
+use host_link::testing::Outage;
 use host_link::{LinkError, Port, Robot};
 use link_protocol::crc32c;
 use tank_less::{Line, circle, connect, upload};

@@ -93,13 +93,20 @@ mod tests {
     fn is_exact<const N: usize>() {
         let (nodes, weights) = (GaussLegendre::<N>::NODES, GaussLegendre::<N>::WEIGHTS);
         for degree in 0..2 * i32::try_from(N).unwrap() {
-            let sum: f64 = nodes.iter().zip(weights).map(|(x, w)| w * x.powi(degree)).sum();
+            let sum: f64 = nodes
+                .iter()
+                .zip(weights)
+                .map(|(x, w)| w * x.powi(degree))
+                .sum();
             let exact = if degree % 2 == 0 {
                 2.0 / f64::from(degree + 1)
             } else {
                 0.0
             };
-            assert!((sum - exact).abs() < 1e-14, "{N} nodes, degree {degree}: {sum}");
+            assert!(
+                (sum - exact).abs() < 1e-14,
+                "{N} nodes, degree {degree}: {sum}"
+            );
         }
         assert!(nodes.is_sorted() && nodes.iter().all(|x| x.abs() < 1.0));
     }

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use calibrate::{TrackOptions, calibrate_run, load_run, predict, usual_reflectors};
 use gait_player::GaitTable;
-use host_link::port::{FaultPlan, FaultyPort};
+use host_link::testing::{FaultPlan, FaultyPort};
 use host_link::{Port, Robot};
 use link_protocol::StateName;
 use swimmer_files::{AnyGait, GaitSpec, ServoFile, SwimmerFile};

@@ -5,8 +5,9 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use gait_player::GaitTable;
-use host_link::port::{FaultPlan, Faults, FaultyPort, TracedFrame, TracedPort};
+use host_link::port::{TracedFrame, TracedPort};
 use host_link::session::{ClockSamples, SessionConfig};
+use host_link::testing::{FaultPlan, Faults, FaultyPort};
 use host_link::{Port, Robot};
 use link_protocol::{Decoder, Direction, Header, Key, MAX_ENCODED, Message, Play, Request, encode};
 use swimmer_files::{LinkFrame, SwimmerFile};

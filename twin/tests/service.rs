@@ -9,7 +9,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use gait_player::storage::MemoryStorage;
-use host_link::port::{Device, FaultPlan, FaultyPort, PtyPort, SerialPort, TcpPort};
+use host_link::port::{Device, PtyPort, SerialPort, TcpPort};
+use host_link::testing::{FaultPlan, FaultyPort};
 use host_link::{LinkError, Port, Robot};
 use link_protocol::StateName;
 use play::{circle, robot, table};

@@ -9,7 +9,8 @@ use std::path::{Path, PathBuf};
 
 use gait_player::Transport;
 use host_link::Port;
-use host_link::port::{FaultPlan, Faults, FaultyPort, TcpPort};
+use host_link::port::TcpPort;
+use host_link::testing::{FaultPlan, Faults, FaultyPort};
 use serde::Serialize;
 use twin::{TrackError, TwinConfig, VirtualRobot as _, serve};
 
@@ -217,7 +218,7 @@ fn addresses(text: &str) -> Outcome<Vec<SocketAddr>> {
 
 fn faults(text: &str) -> Result<Faults, String> {
     text.parse()
-        .map_err(|error: host_link::port::FaultsError| error.to_string())
+        .map_err(|error: host_link::testing::FaultsError| error.to_string())
 }
 
 impl From<TrackError> for Failure {

@@ -90,7 +90,7 @@ impl<P: Port, S: FnMut(TracedFrame<'_>) + Send> Port for TracedPort<P, S> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::port::MockPort;
+    use crate::testing::MockPort;
 
     #[test]
     fn every_frame_is_seen_once_with_its_time() {

@@ -23,7 +23,7 @@ impl WireSpeed {
 
     /// A line with a Bluetooth 2.0 module (HC-05) in it, as it is planned for: the serial ends run at 115 200 baud, the
     /// radio between them passes 5 kB/s and takes 25 ms. That it hands bytes to the host in lumps of 230 is a fault
-    /// ([`super::Faults::clump`]).
+    /// (`testing::Faults::clump`).
     pub fn hc05() -> Self {
         Self {
             baud: 50_000,

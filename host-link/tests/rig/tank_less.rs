@@ -9,7 +9,8 @@ use gait_player::storage::MemoryStorage;
 use gait_player::{
     Boot, Brain, BrainConfig, GaitTable, Identity, Inputs, Limits, Output, TICK_US, Transport,
 };
-use host_link::port::{Device, FaultPlan, Faults, FaultyPort, VirtualPort, WireSpeed};
+use host_link::port::{Device, VirtualPort, WireSpeed};
+use host_link::testing::{FaultPlan, Faults, FaultyPort};
 use host_link::{LinkError, Robot as HostRobot};
 use link_protocol::{
     Board, Configuration, FirmwareVersion, MAX_ENCODED, Message, Reply, Request, ServoSettings,

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 
 use gait_player::GaitTable;
-use host_link::port::{Character, FaultPlan, FaultyPort, heard};
+use host_link::testing::{Character, FaultPlan, FaultyPort, heard};
 use host_link::{Port as _, Robot};
 use link_protocol::{
     Header, Heartbeat, Hello, MAX_ENCODED, Message, PROTOCOL_CURRENT, PROTOCOL_MIN, Request,

@@ -5,7 +5,8 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use emulator::Period;
-use host_link::port::{FaultPlan, Faults, FaultyPort, TracedFrame, TracedPort};
+use host_link::port::{TracedFrame, TracedPort};
+use host_link::testing::{FaultPlan, Faults, FaultyPort};
 use host_link::{Port as _, Robot, StoppedBy};
 use link_protocol::{Decoder, Direction, Message, StateName};
 

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use host_link::Robot;
-use host_link::port::MockPort;
+use host_link::testing::MockPort;
 
 use super::super::port::AnyPort;
 use super::relay::{Ask, Relayed, Unanswered};

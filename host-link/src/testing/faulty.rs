@@ -6,9 +6,9 @@ use std::time::Duration;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use super::Port;
 use super::faults::{Faults, Outage};
 use super::injector::{FaultCounts, FaultInjector};
+use crate::Port;
 
 /// Which faults strike the bytes that are written and which those that are read.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -154,7 +154,7 @@ impl<P: Port> Port for FaultyPort<P> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::port::MockPort;
+    use crate::testing::MockPort;
 
     const MS: Duration = Duration::from_millis(1);
 

@@ -8,7 +8,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::baud::misread;
 use super::faults::{Faults, Outage};
-use super::frames::FrameCutter;
+use crate::port::FrameCutter;
 
 /// What an injector has done so far, in frames.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

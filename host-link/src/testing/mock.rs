@@ -5,7 +5,7 @@ use std::io;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use super::Port;
+use crate::Port;
 
 #[derive(Debug, Default)]
 struct Shared {
