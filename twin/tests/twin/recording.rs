@@ -1,11 +1,8 @@
 //! Tracking files of whole plays: their form, their truth, their repeatability.
 
-#[path = "rig/play.rs"]
-mod play;
-
 use std::fs;
 
-use play::{circle, play_recorded, robot, table};
+use crate::play::{circle, play_recorded, robot, table};
 use swimmer_model::Pose;
 use twin::{CameraConfig, TwinConfig};
 

@@ -1,15 +1,12 @@
 //! What the twin swims against what the model says it should: through the link, the brain, the servos and the tank.
 
-#[path = "rig/play.rs"]
-mod play;
-
 use std::f64::consts::TAU;
 
+use crate::play::{Played, circle, play, robot, table};
 use gait_player::playback::Playback;
 use gait_player::servo::plant::PlantParameters;
 use gait_player::{GaitTable, Limits};
 use nalgebra::Vector2;
-use play::{Played, circle, play, robot, table};
 use swimmer_files::ServoFile;
 use swimmer_model::{Model, Pose, Swimmer, Tolerance, swim};
 use twin::{Tank, TwinConfig};

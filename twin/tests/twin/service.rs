@@ -1,19 +1,15 @@
 //! The twin in real time, opened by path as a program would, and its memory over a power cut.
-#![cfg(unix)]
-
-#[path = "rig/play.rs"]
-mod play;
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
+use crate::play::{circle, robot, table};
 use gait_player::storage::MemoryStorage;
 use host_link::port::{Device, PtyPort, SerialPort, TcpPort};
 use host_link::testing::{FaultPlan, FaultyPort};
 use host_link::{LinkError, Port, Robot};
 use link_protocol::StateName;
-use play::{circle, robot, table};
 use twin::{Twin, TwinConfig, TwinPort, VirtualRobot, WireSpeed, World, serve};
 
 /// Ends the service even where the host's part panics.

@@ -12,7 +12,6 @@ use swimmer_model::{Circle, Gait, Pose};
 use twin::{CycleStart, Recording, Twin, TwinConfig, TwinPort, WireSpeed};
 
 /// What came of it.
-#[allow(dead_code)] // each test looks at its part
 pub(crate) struct Played {
     /// Cycle starts, the last one's end included.
     pub(crate) cycle_starts: Vec<CycleStart>,
@@ -24,12 +23,10 @@ pub(crate) struct Played {
 }
 
 /// The paper's robot.
-#[allow(dead_code)]
 pub(crate) fn robot() -> SwimmerFile {
     SwimmerFile::preset("robot").unwrap()
 }
 
-#[allow(dead_code)]
 pub(crate) fn circle(amplitude: f64) -> Circle<f64> {
     Circle { amplitude }
 }
@@ -44,7 +41,6 @@ pub(crate) fn table(knots: usize, gait: &impl Gait<f64>) -> GaitTable {
 }
 
 /// Uploads, plays `cycles` cycles of `period_s`, waits for the end.
-#[allow(dead_code)]
 pub(crate) fn play(config: TwinConfig, table: &GaitTable, cycles: u32, period_s: f64) -> Played {
     play_recorded(config, table, cycles, period_s, None)
 }
