@@ -1,4 +1,4 @@
-//! Whole files or none: written beside their place and renamed into it.
+//! Whole files or none: written next to their place and renamed into it.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
@@ -83,26 +83,30 @@ fn replace(place: &Path, bytes: &[u8]) -> io::Result<()> {
 }
 
 fn replace_with(place: &Path, write: impl FnOnce(File) -> io::Result<()>) -> io::Result<()> {
-    make_folder_of(place)?;
-    let temporary = beside(place, "partial");
-    let written = File::create(&temporary)
-        .and_then(|file| {
-            write(file.try_clone()?)?;
-            file.sync_all()
-        })
-        .and_then(|()| fs::rename(&temporary, place));
-    if written.is_err() {
-        let _ = fs::remove_file(&temporary);
-    }
-    written
+    let folder = folder_of(place)?;
+    let mut name = std::ffi::OsString::from(".");
+    name.push(place.file_name().unwrap_or_default());
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(&name).suffix(".partial");
+    // The umask takes its share, as of any new file.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let temporary = builder.tempfile_in(folder)?;
+    write(temporary.as_file().try_clone()?)?;
+    temporary.as_file().sync_all()?;
+    temporary.persist(place)?;
+    Ok(())
 }
 
-/// Makes the folder that a file shall stand in, where it is missing.
-pub(crate) fn make_folder_of(place: &Path) -> io::Result<()> {
-    place
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty())
-        .map_or(Ok(()), fs::create_dir_all)
+/// Returns the folder of a file, and makes it if it is missing.
+pub(crate) fn folder_of(place: &Path) -> io::Result<&Path> {
+    match place.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => {
+            fs::create_dir_all(folder)?;
+            Ok(folder)
+        }
+        _ => Ok(Path::new(".")),
+    }
 }
 
 /// What a path that shall be written leads to.
@@ -139,14 +143,6 @@ pub(crate) fn destination(path: &Path) -> io::Result<Destination> {
     Ok(Destination::File(place))
 }
 
-/// `name.ext` becomes `.name.ext.SUFFIX` in the same folder, so that the rename stays on one file system.
-pub(crate) fn beside(path: &Path, suffix: &str) -> PathBuf {
-    let mut name = std::ffi::OsString::from(".");
-    name.push(path.file_name().unwrap_or_default());
-    name.push(format!(".{}.{suffix}", std::process::id()));
-    path.with_file_name(name)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -175,6 +171,40 @@ mod tests {
             matches!(&refused, FileError::Write { source, .. } if source.to_string().contains("it is a folder")),
             "{refused}"
         );
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_file_has_the_permissions_of_any_new_file() {
+        use std::os::unix::fs::PermissionsExt as _;
+
+        let folder = tempfile::tempdir().unwrap();
+        let mode = |name: &str| {
+            let there = std::fs::metadata(folder.path().join(name)).unwrap();
+            there.permissions().mode()
+        };
+        std::fs::write(folder.path().join("plain"), "x").unwrap();
+        write_atomically(&folder.path().join("whole"), b"x").unwrap();
+        assert_eq!(mode("whole"), mode("plain"));
+    }
+
+    #[test]
+    fn threads_that_write_one_file_leave_one_of_their_texts() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("shared");
+        std::thread::scope(|scope| {
+            for byte in b"ab" {
+                scope.spawn(|| {
+                    for _ in 0..50 {
+                        write_atomically(&path, &vec![*byte; 100_000]).unwrap();
+                    }
+                });
+            }
+        });
+        let bytes = std::fs::read(&path).unwrap();
+        assert_eq!(bytes.len(), 100_000);
+        assert!(bytes.iter().all(|byte| *byte == bytes[0]));
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use super::container::Container;
 use super::{LinkFrame, LinkLogError};
 use crate::FileError;
-use crate::atomic::{Destination, destination, make_folder_of};
+use crate::atomic::{Destination, destination, folder_of};
 
 /// Writes a link log, which grows under its own name. Dropped before [`LinkLogWriter::finish`], it ends all the same; without a
 /// single frame it leaves no file.
@@ -81,7 +81,7 @@ impl LinkLogWriter {
                 return Err(write_error(io::Error::other("it is no file; name one")).into());
             }
         };
-        make_folder_of(&place).map_err(write_error)?;
+        folder_of(&place).map_err(write_error)?;
         let replaces = place.exists();
         let file = File::options()
             .write(true)
