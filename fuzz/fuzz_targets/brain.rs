@@ -6,8 +6,8 @@ use std::collections::VecDeque;
 use arbitrary::Arbitrary;
 use libfuzzer_sys::fuzz_target;
 use link_protocol::{
-    Binding, Checked, Decoder, Flags, Header, HelloReply, Key, Message, Reply, Request, ResetReason, Seal,
-    StateName,
+    Binding, Checked, Decoder, Flags, Header, HelloReply, Key, Message, Reply, Request,
+    ResetReason, Seal, StateName,
 };
 use swimmer_fuzz::ask::{Ask, PIECE, table};
 use swimmer_fuzz::robot::FuzzedRobot;
