@@ -12,10 +12,13 @@ mod frames;
 mod listed;
 #[cfg(unix)]
 mod pty;
+mod send_queue;
 #[cfg(not(target_family = "wasm"))]
 mod serial;
 mod tcp;
 mod traced;
+#[cfg(unix)]
+mod tty;
 mod virtual_port;
 mod wire;
 
@@ -29,6 +32,7 @@ pub(crate) use frames::FrameCutter;
 pub use listed::{ListedPort, serial_ports};
 #[cfg(unix)]
 pub use pty::{PtyError, PtyPort};
+pub use send_queue::SendQueue;
 #[cfg(not(target_family = "wasm"))]
 pub use serial::{OpenError, SerialPort};
 pub use tcp::TcpPort;
@@ -47,11 +51,23 @@ pub trait Port: Send {
     /// What the operating system says when the port is gone.
     fn read(&mut self, buf: &mut [u8], timeout: Duration) -> io::Result<usize>;
 
-    /// Sends all of `bytes`. May return before the last one has left.
+    /// Sends all of `bytes`. May return before the last one has left; waits at most a second for a port that takes none.
+    ///
+    /// # Errors
+    /// What the operating system says when the port is gone; [`io::ErrorKind::TimedOut`].
+    fn write(&mut self, bytes: &[u8]) -> io::Result<()>;
+
+    /// Sends as many of `bytes` as the port takes without waiting. Returns their number; 0 if it takes none at present.
     ///
     /// # Errors
     /// What the operating system says when the port is gone.
-    fn write(&mut self, bytes: &[u8]) -> io::Result<()>;
+    fn write_ready(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.write(bytes).map(|()| bytes.len())
+    }
+
+    /// Discards bytes that were written and have not left yet, as far as the system allows: for a stop, which must not wait
+    /// behind them.
+    fn discard_unsent(&mut self) {}
 
     /// The time on this port's clock, since an arbitrary origin.
     fn now(&self) -> Duration;
@@ -66,6 +82,14 @@ impl<P: Port + ?Sized> Port for Box<P> {
         (**self).write(bytes)
     }
 
+    fn write_ready(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        (**self).write_ready(bytes)
+    }
+
+    fn discard_unsent(&mut self) {
+        (**self).discard_unsent();
+    }
+
     fn now(&self) -> Duration {
         (**self).now()
     }
@@ -78,6 +102,14 @@ impl<P: Port + ?Sized> Port for &mut P {
 
     fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
         (**self).write(bytes)
+    }
+
+    fn write_ready(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        (**self).write_ready(bytes)
+    }
+
+    fn discard_unsent(&mut self) {
+        (**self).discard_unsent();
     }
 
     fn now(&self) -> Duration {

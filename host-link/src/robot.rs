@@ -1,11 +1,13 @@
-//! A robot as a program uses it: blocking calls over any port. Everything is decided in the [`Session`]; this moves its
-//! bytes and waits.
+//! Blocking calls to a robot over any port. The [`Session`] decides everything; this module moves its bytes and waits, in one loop
+//! (`connection`).
 
 pub mod await_play;
+mod connection;
 mod requests;
 pub mod sequence;
 
 pub use await_play::time_left;
+pub use connection::{Callbacks, Halt, SILENCE_REPORTED, Silence};
 pub use sequence::{Leg, Sequence, SequenceProgress};
 
 use std::ops::ControlFlow;
@@ -13,17 +15,15 @@ use std::time::Duration;
 
 use link_protocol::{HelloReply, Reply, Request, StopCause, TableInfo, Telemetry};
 
+use self::connection::Connection;
 use crate::port::Port;
 use crate::session::{
-    ClockFit, Event, LONGEST_SILENCE, LinkCounters, LinkError, Session, SessionConfig, Ticket,
+    ClockFit, Event, LONGEST_SILENCE, LinkCounters, LinkError, Session, SessionConfig,
     UploadProgress, cause_in_words,
 };
 
 /// How often a caller is asked whether to go on while nothing happens.
 const BEAT: Duration = Duration::from_millis(20);
-
-/// A virtual clock moves only while somebody waits.
-const SHORTEST_WAIT: Duration = Duration::from_micros(100);
 
 /// Sees every piece of telemetry and when it arrived, on the port's clock.
 pub type Observer = Box<dyn FnMut(&Telemetry, Duration) + Send>;
@@ -55,11 +55,8 @@ impl std::fmt::Display for StoppedBy {
 /// The robot stops by itself when it hears nothing fresh for half a second, so that between requests somebody must
 /// [`listen`](Robot::listen): every method here keeps the lease fed while it waits, and none does between calls.
 pub struct Robot<P> {
-    port: P,
-    session: Session,
+    connection: Connection<P>,
     hello: HelloReply,
-    latest: Option<Telemetry>,
-    observer: Option<Observer>,
 }
 
 impl<P: Port> Robot<P> {
@@ -72,58 +69,44 @@ impl<P: Port> Robot<P> {
         Self::connect_with(port, SessionConfig::new(seed))
     }
 
-    /// [`connect`](Self::connect) with everything a session can be told.
+    /// [`connect`](Self::connect) with every setting of a session.
     ///
     /// # Errors
     /// As [`connect`](Self::connect).
     pub fn connect_with(port: P, config: SessionConfig) -> Result<Self, LinkError> {
-        let mut shell = Shell {
-            port,
-            session: Session::new(config),
-        };
-        let now = shell.port.now();
-        let ticket = shell.session.connect(now);
-        let hello = shell.wait_connected(ticket)?;
-        let Shell { port, session } = shell;
-        Ok(Self {
-            port,
-            session,
-            hello,
-            latest: None,
-            observer: None,
-        })
+        Self::connect_observed(port, config, Callbacks::default())
     }
 
-    /// Sends a stop, or an e-stop, without greeting first, until it is answered: the quickest way to a robot at rest.
-    /// Gives the port back, and says what ended the motion: where the stop waits behind other bytes, the robot may have
+    /// [`connect_with`](Self::connect_with) with callbacks, which are called while the robot is greeted too.
+    ///
+    /// # Errors
+    /// As [`connect`](Self::connect).
+    pub fn connect_observed(
+        port: P,
+        config: SessionConfig,
+        callbacks: Callbacks,
+    ) -> Result<Self, LinkError> {
+        let mut connection = Connection::new(port, Session::new(config), callbacks);
+        let hello = greet(&mut connection)?;
+        Ok(Self { connection, hello })
+    }
+
+    /// Sends a stop without greeting first, until it is answered: the quickest way to a robot at rest.
+    /// Returns the port, and what ended the motion: where the stop waits behind other bytes, the robot may have
     /// stopped by itself before.
     ///
     /// # Errors
     /// No answer, or a port that failed.
-    pub fn stop_at_once(port: P, seed: u64, estop: bool) -> Result<(P, StoppedBy), LinkError> {
-        let mut shell = Shell {
-            port,
-            session: Session::new(SessionConfig::new(seed)),
-        };
-        let request = if estop { Request::EStop } else { Request::Stop };
-        let now = shell.port.now();
-        let ticket = shell.session.request(now, request);
-        loop {
-            match shell.step(now + Duration::from_hours(1), "stopping")? {
-                Some(Event::Answered {
-                    ticket: answered, ..
-                }) if answered == ticket => return Ok((shell.port, StoppedBy::Request)),
-                Some(Event::StoppedByItself {
-                    ticket: stopped,
-                    cause,
-                }) if stopped == ticket => return Ok((shell.port, StoppedBy::Itself(cause))),
-                Some(Event::Failed {
-                    ticket: failed,
-                    error,
-                }) if failed == ticket => return Err(error),
-                _ => {}
-            }
-        }
+    pub fn stop_at_once(
+        port: P,
+        seed: u64,
+        halt: Halt,
+        callbacks: Callbacks,
+    ) -> Result<(P, StoppedBy), LinkError> {
+        let session = Session::new(SessionConfig::new(seed));
+        let mut connection = Connection::new(port, session, callbacks);
+        let by = stopped_by(&connection.halt(halt, "stopping")?);
+        Ok((connection.port, by))
     }
 
     /// Greets again: after an error of the link, or to take a robot back. The robot's motion is left as it is.
@@ -131,25 +114,8 @@ impl<P: Port> Robot<P> {
     /// # Errors
     /// As [`connect`](Self::connect).
     pub fn reconnect(&mut self) -> Result<(), LinkError> {
-        let now = self.port.now();
-        let ticket = self.session.connect(now);
-        loop {
-            match self.step(now + Duration::from_hours(1), "connecting")? {
-                Some(Event::Connected {
-                    ticket: connected, ..
-                }) if connected == ticket => {
-                    if let Some(hello) = self.session.hello() {
-                        self.hello = *hello;
-                    }
-                    return Ok(());
-                }
-                Some(Event::Failed {
-                    ticket: failed,
-                    error,
-                }) if failed == ticket => return Err(error),
-                _ => {}
-            }
-        }
+        self.hello = greet(&mut self.connection)?;
+        Ok(())
     }
 
     /// Goes on over another port, as after a Bluetooth module came back under a new handle. Greets again.
@@ -157,7 +123,7 @@ impl<P: Port> Robot<P> {
     /// # Errors
     /// As [`connect`](Self::connect).
     pub fn replace_port(&mut self, port: P) -> Result<P, LinkError> {
-        let old = std::mem::replace(&mut self.port, port);
+        let old = self.connection.replace_port(port);
         self.reconnect().map(|()| old)
     }
 
@@ -173,53 +139,60 @@ impl<P: Port> Robot<P> {
 
     /// What crossed the link so far, as counted here. (What the robot counted: [`counters`](Self::counters).)
     pub fn link_counters(&self) -> LinkCounters {
-        self.session.counters()
+        self.connection.session.counters()
     }
 
     /// The robot's clock on the port's; `None` before the first ping came back.
     pub fn clock(&self) -> Option<ClockFit> {
-        self.session.clock()
+        self.connection.session.clock()
     }
 
     /// Whether the robot has shown in this session that it has the key: it signs its answers. `None` without a key.
     pub fn answers_signed(&self) -> Option<bool> {
-        self.session.answers_signed()
+        self.connection.session.answers_signed()
     }
 
     /// The last telemetry that came.
     pub fn telemetry(&self) -> Option<&Telemetry> {
-        self.latest.as_ref()
+        self.connection.latest.as_ref()
     }
 
     /// Shows every later piece of telemetry to `observer`.
     pub fn observe(&mut self, observer: Observer) {
-        self.observer = Some(observer);
+        self.connection.observer = Some(observer);
     }
 
     /// The port.
     pub fn port(&self) -> &P {
-        &self.port
+        &self.connection.port
     }
 
     /// The port.
     pub fn port_mut(&mut self) -> &mut P {
-        &mut self.port
+        &mut self.connection.port
     }
 
     /// Puts another port around or in place of the present one, with the session as it is: a trace, say.
     pub fn map_port<Q: Port>(self, wrap: impl FnOnce(P) -> Q) -> Robot<Q> {
         Robot {
-            port: wrap(self.port),
-            session: self.session,
+            connection: self.connection.map_port(wrap),
             hello: self.hello,
-            latest: self.latest,
-            observer: self.observer,
         }
     }
 
-    /// Leaves the robot as it is and gives the port back. Unless it plays detached, the robot stops when its lease ends.
+    /// Leaves the robot as it is and returns the port. Unless it plays detached, the robot stops when its lease ends.
     pub fn into_port(self) -> P {
-        self.port
+        self.connection.port
+    }
+
+    /// Replaces the callbacks.
+    pub fn call_back(&mut self, callbacks: Callbacks) {
+        self.connection.callbacks = callbacks;
+    }
+
+    /// Replaces the callback that ends a wait by a stop ([`Callbacks::halt`]).
+    pub fn halt_when(&mut self, halt: Box<dyn FnMut() -> Option<Halt> + Send>) {
+        self.connection.callbacks.halt = Some(halt);
     }
 
     /// Keeps the session alive for `time`, or until `watch` breaks; `watch` is asked after each telemetry, and with the last
@@ -233,16 +206,21 @@ impl<P: Port> Robot<P> {
         mut watch: impl FnMut(Option<&Telemetry>) -> ControlFlow<()>,
     ) -> Result<(), LinkError> {
         let doing = "listening to the robot";
-        let end = self.port.now() + time;
-        while self.port.now() < end {
-            let beat = (self.port.now() + BEAT).min(end);
-            self.step(beat, doing)?;
-            if watch(self.latest.as_ref()).is_break() {
-                return Ok(());
-            }
-            self.check_heard(doing)?;
+        let end = self.connection.now() + time;
+        if time.is_zero() {
+            return Ok(());
         }
-        Ok(())
+        self.connection.wait_by(doing, end, |connection, _| {
+            if watch(connection.latest.as_ref()).is_break() {
+                return Ok(ControlFlow::Break(()));
+            }
+            check_heard(connection, doing)?;
+            Ok(if connection.now() < end {
+                ControlFlow::Continue(())
+            } else {
+                ControlFlow::Break(())
+            })
+        })
     }
 
     /// Uploads a gait table (four bytes a knot, as `gait-player` writes it) and makes it the active one. Takes at most
@@ -258,17 +236,21 @@ impl<P: Port> Robot<P> {
         mut progress: impl FnMut(UploadProgress) -> ControlFlow<()>,
     ) -> Result<TableInfo, LinkError> {
         let doing = "uploading the gait";
-        let now = self.port.now();
-        let wanted = self.session.upload(now, 0, table, now + patience);
+        let now = self.connection.now();
+        let wanted = self
+            .connection
+            .session
+            .upload(now, 0, table, now + patience);
         let mut last = UploadProgress {
             phase: crate::session::UploadPhase::Begin,
             done: 0,
             total: table.len(),
         };
-        loop {
-            let beat = self.port.now() + BEAT;
-            match self.step(beat, doing)? {
-                Some(Event::Uploaded { ticket, table }) if ticket == wanted => return Ok(table),
+        self.connection.wait(doing, |connection, event| {
+            match event {
+                Some(Event::Uploaded { ticket, table }) if ticket == wanted => {
+                    return Ok(ControlFlow::Break(table));
+                }
                 Some(Event::Failed { ticket, error }) if ticket == wanted => return Err(error),
                 Some(Event::Progress {
                     ticket,
@@ -277,116 +259,68 @@ impl<P: Port> Robot<P> {
                 _ => {}
             }
             if progress(last).is_break() {
-                self.session.cancel_upload();
+                connection.session.cancel_upload();
                 return Err(LinkError::Interrupted { doing });
             }
-        }
+            Ok(ControlFlow::Continue(()))
+        })
     }
 
     /// What [`upload`](Self::upload) takes for a table of `bytes` where nothing is lost and the robot stands still; zero without a
     /// session.
     pub fn expected_upload(&self, bytes: usize) -> Duration {
-        self.session.expected_upload(bytes).unwrap_or_default()
+        self.connection
+            .session
+            .expected_upload(bytes)
+            .unwrap_or_default()
     }
 
-    fn check_heard(&self, doing: &'static str) -> Result<(), LinkError> {
-        let silent = self.port.now().saturating_sub(self.session.last_heard());
-        if silent < LONGEST_SILENCE {
-            return Ok(());
-        }
-        let counters = Box::new(self.session.counters());
-        Err(LinkError::Silent {
-            doing,
-            silent,
-            counters,
-        })
-    }
-
-    /// Asks and waits for the answer, which is no refusal.
+    /// Sends a request and waits for its reply, which is not a refusal.
     fn ask(&mut self, request: Request, doing: &'static str) -> Result<Reply, LinkError> {
-        let now = self.port.now();
-        let wanted = self.session.request(now, request);
-        loop {
-            match self.step(self.port.now() + BEAT, doing)? {
-                Some(Event::Answered { ticket, reply }) if ticket == wanted => return Ok(reply),
-                Some(Event::Failed { ticket, error }) if ticket == wanted => return Err(error),
-                _ => {}
-            }
-        }
-    }
-
-    /// Moves bytes until an event comes or `until` has passed.
-    fn step(&mut self, until: Duration, doing: &'static str) -> Result<Option<Event>, LinkError> {
-        let event = step(&mut self.port, &mut self.session, until, doing)?;
-        if let Some(Event::Telemetry { telemetry, at }) = &event {
-            if let Some(observer) = &mut self.observer {
-                observer(telemetry, *at);
-            }
-            self.latest = Some(*telemetry);
-        }
-        Ok(event)
-    }
-}
-
-/// A port and a session that have no robot yet.
-struct Shell<P> {
-    port: P,
-    session: Session,
-}
-
-impl<P: Port> Shell<P> {
-    fn step(&mut self, until: Duration, doing: &'static str) -> Result<Option<Event>, LinkError> {
-        step(&mut self.port, &mut self.session, until, doing)
-    }
-
-    fn wait_connected(&mut self, wanted: Ticket) -> Result<HelloReply, LinkError> {
-        let doing = "connecting";
-        loop {
-            let beat = self.port.now() + BEAT;
-            match self.step(beat, doing)? {
-                Some(Event::Connected { ticket, .. }) if ticket == wanted => {
-                    return self
-                        .session
-                        .hello()
-                        .copied()
-                        .ok_or(LinkError::NotConnected { doing });
-                }
-                Some(Event::Failed { ticket, error }) if ticket == wanted => return Err(error),
-                _ => {}
-            }
+        let now = self.connection.now();
+        let ticket = self.connection.session.request(now, request);
+        match self.connection.outcome(ticket, doing)? {
+            Event::Answered { reply, .. } => Ok(reply),
+            event => Err(LinkError::WrongReply {
+                doing,
+                reply: format!("{event:?}"),
+            }),
         }
     }
 }
 
-fn step<P: Port>(
-    port: &mut P,
-    session: &mut Session,
-    until: Duration,
-    doing: &'static str,
-) -> Result<Option<Event>, LinkError> {
-    let fail = |source| LinkError::Port { doing, source };
-    loop {
-        let now = port.now();
-        session.poll(now);
-        let outgoing = session.take_outgoing();
-        if !outgoing.is_empty() {
-            port.write(&outgoing).map_err(fail)?;
-        }
-        if let Some(event) = session.next_event() {
-            return Ok(Some(event));
-        }
-        if now >= until {
-            return Ok(None);
-        }
-        let wake = session
-            .next_deadline()
-            .map_or(until, |deadline| deadline.min(until));
-        let mut buf = [0; 512];
-        let count = port
-            .read(&mut buf, wake.saturating_sub(now).max(SHORTEST_WAIT))
-            .map_err(fail)?;
-        if count > 0 {
-            session.receive(port.now(), buf.get(..count).unwrap_or(&buf));
-        }
+/// Opens a session.
+fn greet<P: Port>(connection: &mut Connection<P>) -> Result<HelloReply, LinkError> {
+    let doing = "connecting";
+    let now = connection.now();
+    let ticket = connection.session.connect(now);
+    connection.outcome(ticket, doing)?;
+    connection
+        .session
+        .hello()
+        .copied()
+        .ok_or(LinkError::NotConnected { doing })
+}
+
+fn check_heard<P: Port>(connection: &Connection<P>, doing: &'static str) -> Result<(), LinkError> {
+    let silent = connection
+        .now()
+        .saturating_sub(connection.session.last_heard());
+    if silent < LONGEST_SILENCE {
+        return Ok(());
+    }
+    let counters = Box::new(connection.session.counters());
+    Err(LinkError::Silent {
+        doing,
+        silent,
+        counters,
+    })
+}
+
+/// What ended the motion, by the event that ended a stop.
+fn stopped_by(event: &Event) -> StoppedBy {
+    match event {
+        Event::StoppedByItself { cause, .. } => StoppedBy::Itself(*cause),
+        _ => StoppedBy::Request,
     }
 }

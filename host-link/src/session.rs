@@ -48,6 +48,7 @@ pub use error::{LinkError, cause_in_words, cycles_in_words};
 pub use event::{Event, Ticket};
 pub(crate) use greeting::firmware_name;
 pub use in_flight::Follower;
+pub use receive::LONGEST_WORK;
 pub use upload::{UploadPhase, UploadProgress};
 
 use beats::Beats;

@@ -6,7 +6,7 @@ mod tank_less;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use host_link::robot::time_left;
+use host_link::robot::{Callbacks, Halt, time_left};
 use host_link::testing::{FaultPlan, FaultyPort, Outage};
 use host_link::{LinkError, Port, Robot};
 use link_protocol::{StateName, StopCause};
@@ -145,10 +145,11 @@ fn a_stop_works_without_a_greeting() {
     robot
         .listen(MS * 2000, |_| ControlFlow::Continue(()))
         .unwrap();
-    let (mut port, _) = Robot::stop_at_once(robot.into_port(), 80, false).unwrap();
+    let (mut port, _) =
+        Robot::stop_at_once(robot.into_port(), 80, Halt::Stop, Callbacks::default()).unwrap();
     port.inner_mut().pass(MS * 1600);
     assert!(port.inner().device().output.unwrap().pulses_ns.is_none());
-    let (mut port, _) = Robot::stop_at_once(port, 81, true).unwrap();
+    let (mut port, _) = Robot::stop_at_once(port, 81, Halt::EStop, Callbacks::default()).unwrap();
     port.inner_mut().pass(MS * 20);
     assert_eq!(
         port.inner().device().output.unwrap().state,

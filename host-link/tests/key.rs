@@ -10,6 +10,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use host_link::port::{TracedFrame, TracedPort};
+use host_link::robot::{Callbacks, Halt};
 use host_link::session::SessionConfig;
 use host_link::testing::{FaultPlan, Faults};
 use host_link::{LinkError, Port, Robot};
@@ -56,7 +57,8 @@ fn without_the_key_or_with_a_wrong_one_the_error_says_so_and_stops_work() {
         "{error}"
     );
     robot.stop().unwrap();
-    let (mut port, _) = Robot::stop_at_once(robot.into_port(), 4, true).unwrap();
+    let (mut port, _) =
+        Robot::stop_at_once(robot.into_port(), 4, Halt::EStop, Callbacks::default()).unwrap();
     port.inner_mut().pass(MS * 20);
     assert_eq!(
         port.inner().device().output.unwrap().state,

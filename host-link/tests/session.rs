@@ -5,7 +5,7 @@ mod scripted;
 
 use std::time::Duration;
 
-use host_link::session::{Event, Session, SessionConfig};
+use host_link::session::{Event, LONGEST_WORK, Session, SessionConfig};
 use link_protocol::{
     Checked, Message, Pong, Refusal, Reply, Request, StateName, StopCause, TableInfo,
 };
@@ -92,6 +92,50 @@ fn a_robot_that_works_is_not_given_up() {
     }
     script.reply(Reply::Done);
     assert_eq!(script.outcome(ticket), Some(Ok(())));
+}
+
+/// It is, though, after the longest time that any request takes.
+#[test]
+fn a_robot_that_works_for_ever_ends_in_the_stated_time() {
+    let mut script = Script::open(MS * 10);
+    let ticket = script.session.request(script.now, Request::Resume);
+    script.collect();
+    let begun = script.now;
+    while script.outcome(ticket).is_none() {
+        script.run_to(script.now + MS * 500);
+        assert!(script.now < begun + MS * 60_000, "it never ends");
+        script.reply(Reply::Working);
+    }
+    let took = script.now.abs_diff(begun);
+    assert!(
+        took >= LONGEST_WORK && took < LONGEST_WORK + MS * 1000,
+        "{took:?}"
+    );
+    let error = script.outcome(ticket).unwrap().unwrap_err();
+    assert!(
+        error.contains("resuming") && error.contains("still working at it"),
+        "{error}"
+    );
+}
+
+/// So does the check of an upload, long before the upload's own deadline.
+#[test]
+fn a_check_that_lasts_for_ever_ends_the_upload() {
+    let mut script = Script::open(MS * 10);
+    let deadline = script.now + MS * 600_000;
+    let ticket = script.session.upload(script.now, 0, &[0; 16], deadline);
+    script.collect();
+    script.reply(Reply::Wanted {
+        upload: script.last_request().1,
+        offset: 16,
+    });
+    while script.outcome(ticket).is_none() {
+        script.run_to(script.now + MS * 500);
+        assert!(script.now < MS * 60_000, "it never ends");
+        script.reply(Reply::Working);
+    }
+    let error = script.outcome(ticket).unwrap().unwrap_err();
+    assert!(error.contains("uploading the gait"), "{error}");
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! `swimmer lab`: gives the lab page to a browser, and lends it the robot's port where the browser has no way of its own.
 
+mod callers;
 mod gate;
 mod hub;
 mod page;
@@ -9,17 +10,17 @@ use std::fmt;
 use std::io::{self, IsTerminal as _};
 use std::net::{IpAddr, SocketAddr, TcpListener, TcpStream, ToSocketAddrs as _};
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, mpsc};
+use std::sync::Arc;
 use std::thread;
 use std::time::Duration;
 
 use serde::Serialize;
 use swimmer_files::write_atomically;
 
+use self::callers::{Caller, Callers};
 use self::gate::{Gate, Token};
 pub(crate) use self::page::{beside, find};
-use self::visitor::House;
+use self::visitor::Server;
 use crate::commands::robot::PortToLend;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
@@ -28,8 +29,6 @@ use crate::output::{Output, aside, for_scripts};
 
 /// How often the listening thread looks whether it shall end.
 const LOOK: Duration = Duration::from_millis(20);
-/// Connections at a time; a page needs one, and a browser holds a few more in hand.
-const MOST_VISITORS: usize = 32;
 
 /// Open the lab page: height map, gaits to drag, and the robot
 ///
@@ -114,11 +113,11 @@ impl Lab {
             // Where there is no browser to start, the address stands there.
             let _ = open::that_detached(&address);
         }
-        let (hub, inbox) = mpsc::channel();
-        let house = House { gate, page, hub };
+        let (hub, inbox) = hub::inbox();
+        let server = Server { gate, page, hub };
         let ended = interrupt.clone();
         let door = thread::Builder::new()
-            .spawn(move || attend(&listener, house, &ended))
+            .spawn(move || attend(&listener, server, &ended))
             .map_err(|error| {
                 Failure::Tried(format!(
                     "the system gave no thread to listen with: {error}; try again"
@@ -196,39 +195,29 @@ fn typed(name: Option<&str>, place: SocketAddr) -> String {
     }
 }
 
-/// Lets browsers in until the end; each connection has a thread.
-fn attend(listener: &TcpListener, house: House, ended: &Interrupt) -> u64 {
-    let house = Arc::new(house);
-    let present = Arc::new(AtomicUsize::new(0));
+/// Accepts connections until the end; each has a thread.
+fn attend(listener: &TcpListener, server: Server, ended: &Interrupt) -> u64 {
+    let server = Arc::new(server);
+    let callers = Callers::default();
     let mut connections = 0;
     while !ended.requested() {
         let Ok((stream, _)) = listener.accept() else {
             thread::sleep(LOOK);
             continue;
         };
-        if present.load(Ordering::Relaxed) >= MOST_VISITORS {
-            continue;
-        }
         connections += 1;
-        let (house, present) = (Arc::clone(&house), Arc::clone(&present));
-        present.fetch_add(1, Ordering::Relaxed);
-        let leaving = Arc::clone(&present);
-        let served = thread::Builder::new().spawn(move || {
-            // A browser that goes away in the middle is not told.
-            let _ = serve(&house, stream, connections);
-            leaving.fetch_sub(1, Ordering::Relaxed);
-        });
-        if served.is_err() {
-            present.fetch_sub(1, Ordering::Relaxed);
-        }
+        let caller = callers.add(connections, &stream);
+        let server = Arc::clone(&server);
+        // Without a thread the connection is closed. A browser that goes away in the middle needs no reply.
+        let _ = thread::Builder::new().spawn(move || serve(&server, stream, caller));
     }
     connections
 }
 
-fn serve(house: &House, stream: TcpStream, id: u64) -> io::Result<()> {
+fn serve(server: &Server, stream: TcpStream, caller: Caller) -> io::Result<()> {
     // It may have inherited the listener's way.
     stream.set_nonblocking(false)?;
-    house.serve(stream, id)
+    server.serve(stream, caller)
 }
 
 #[cfg(test)]

@@ -4,11 +4,15 @@ use std::io::{self, BufRead as _, BufReader, Read as _, Write as _};
 use std::net::TcpStream;
 use std::path::Path;
 use std::process::{Child, Stdio};
-use std::thread::sleep;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{self, JoinHandle, sleep};
 use std::time::{Duration, Instant};
 
+#[cfg(unix)]
+use host_link::port::PtyPort;
 use host_link::{LinkError, Port, Robot};
-use link_protocol::StateName;
+use link_protocol::{Decoder, Header, Request, StateName};
 use serde_json::{Value, json};
 use swimmer_files::AnyGait;
 use tungstenite::client::IntoClientRequest as _;
@@ -249,8 +253,218 @@ fn a_page_that_vanishes_takes_its_lease_along() {
     let mut watcher = lab.link(&[]).unwrap();
     watcher.until_wheel(false, false);
     // Silent, but still connected: nobody feeds the lease in its place.
-    sleep(Duration::from_secs(2));
+    sleep(Duration::from_secs(1));
     until(&mut driver, StateName::Stopped);
+}
+
+/// A page that hangs answers no pings, keeps its connection, and loses the wheel.
+#[test]
+fn a_frozen_page_loses_the_wheel_within_two_seconds() {
+    let folder = tempfile::tempdir().unwrap();
+    let lab = Lab::start(folder.path(), "twin");
+    let mut driver = lab.drive();
+    let mut watcher = lab.link(&[]).unwrap();
+    watcher.until_wheel(false, false);
+    driver.status().unwrap();
+    let frozen = Instant::now();
+    watcher.until_wheel(false, true);
+    let lost = frozen.elapsed();
+    assert!(lost < Duration::from_secs(2), "after {lost:?}");
+    watcher.ask("drive");
+    watcher.until_wheel(true, false);
+    drop(driver);
+}
+
+/// Its browser answers pings all the same: the page gives signs of life by itself.
+#[test]
+fn a_page_whose_script_hangs_loses_the_wheel_within_two_seconds() {
+    let folder = tempfile::tempdir().unwrap();
+    let lab = Lab::start(folder.path(), "twin");
+    let mut driver = lab.link(&[]).unwrap();
+    driver.until_wheel(true, false);
+    let begun = Instant::now();
+    while begun.elapsed() < Duration::from_secs(3) {
+        driver.ask("here");
+        driver
+            .read(&mut [0; 512], Duration::from_millis(200))
+            .unwrap();
+    }
+    assert!(
+        driver.says.iter().all(|said| said["told"] != "wheel"),
+        "{:?}",
+        driver.says
+    );
+    let hangs = Instant::now();
+    driver.until_wheel(false, true);
+    let lost = hangs.elapsed();
+    assert!(lost < Duration::from_secs(2), "after {lost:?}");
+}
+
+/// Most bytes before a stop. The line discipline at the robot's end of a terminal has up to 4096: they have arrived. Without the
+/// stop's lane there are ten times as many, in the terminal and in the queue.
+#[cfg(unix)]
+const ARRIVED: usize = 4096 + 512;
+
+/// A robot's end of a pseudo-terminal that takes nothing from it unless it is told to.
+#[cfg(unix)]
+struct SilentRobot(PtyPort);
+
+#[cfg(unix)]
+impl SilentRobot {
+    fn at(folder: &Path) -> Self {
+        Self(PtyPort::open(Some(&folder.join("robot"))).unwrap())
+    }
+
+    /// Reads until a stop of this kind comes; the bytes before it.
+    fn until_stop(&mut self, wanted: &Request, patience: Duration) -> Option<usize> {
+        let (begun, mut decoder, mut before) = (Instant::now(), Decoder::new(), 0);
+        let mut buf = [0; 512];
+        while begun.elapsed() < patience {
+            let count = self.0.read(&mut buf, Duration::from_millis(1)).unwrap();
+            for byte in &buf[..count] {
+                before += 1;
+                let received = decoder.push(*byte);
+                if received.is_some_and(|received| {
+                    received.message == Ok(link_protocol::Message::Request(wanted.clone()))
+                }) {
+                    return Some(before);
+                }
+            }
+        }
+        None
+    }
+}
+
+/// Sends frames for the robot as fast as the connection takes them, until it is told to end.
+#[cfg(unix)]
+fn flood(mut page: WebPort) -> (Arc<AtomicBool>, JoinHandle<()>) {
+    let end = Arc::new(AtomicBool::new(false));
+    let ended = Arc::clone(&end);
+    let mut frame = [0; link_protocol::MAX_ENCODED];
+    let message = link_protocol::Message::Request(Request::Status);
+    let len = link_protocol::encode(Header::new(7, 1), &message, &mut frame).unwrap();
+    let frames = frame[..len].repeat(100);
+    let flooding =
+        thread::spawn(
+            move || {
+                while !ended.load(Ordering::Relaxed) && page.write(&frames).is_ok() {}
+            },
+        );
+    (end, flooding)
+}
+
+/// Resident memory of a process, bytes.
+#[cfg(target_os = "linux")]
+fn memory(process: &Child) -> usize {
+    let status = std::fs::read_to_string(format!("/proc/{}/status", process.id())).unwrap();
+    let line = status
+        .lines()
+        .find(|line| line.starts_with("VmRSS"))
+        .unwrap();
+    let kib: usize = line.split_whitespace().nth(1).unwrap().parse().unwrap();
+    kib << 10
+}
+
+/// A page that sends without end to a port that takes nothing delays no stop of another page, eats no memory, and keeps
+/// Ctrl-C from nothing.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_saturated_port_delays_no_stop_and_no_ctrl_c() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut robot = SilentRobot::at(folder.path());
+    let mut lab = Lab::start(folder.path(), "robot");
+    let mut driver = lab.link(&[]).unwrap();
+    driver.until_wheel(true, false);
+    let mut watcher = lab.link(&[]).unwrap();
+    watcher.until_wheel(false, false);
+    let at_first = memory(&lab.child);
+    let (end, flooding) = flood(driver);
+    sleep(Duration::from_secs(3));
+    for (word, request) in [("stop", Request::Stop), ("estop", Request::EStop)] {
+        let asked = Instant::now();
+        watcher.ask(word);
+        // The robot reads again only now; what lay in the terminal was discarded for the stop.
+        sleep(Duration::from_millis(100));
+        let before = robot.until_stop(&request, Duration::from_secs(5));
+        let took = asked.elapsed();
+        assert!(
+            before.is_some_and(|before| before < ARRIVED),
+            "{word}: behind {before:?} bytes"
+        );
+        assert!(took < Duration::from_millis(200), "{word}: {took:?}");
+        sleep(Duration::from_secs(1));
+    }
+    let grown = memory(&lab.child).saturating_sub(at_first);
+    assert!(grown < 16 << 20, "grown by {grown} bytes");
+    let pressed = Instant::now();
+    interrupt(&lab.child);
+    assert_eq!(lab.child.wait().unwrap().code(), Some(0));
+    let took = pressed.elapsed();
+    assert!(took < Duration::from_secs(2), "Ctrl-C took {took:?}");
+    end.store(true, Ordering::Relaxed);
+    flooding.join().unwrap();
+}
+
+/// The page that floods is the one that stops.
+#[cfg(unix)]
+#[test]
+fn a_stop_of_the_driver_itself_passes_its_own_frames() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut robot = SilentRobot::at(folder.path());
+    let lab = Lab::start(folder.path(), "robot");
+    let mut driver = lab.link(&[]).unwrap();
+    driver.until_wheel(true, false);
+    let frame = |request: Request| {
+        let mut bytes = [0; link_protocol::MAX_ENCODED];
+        let message = link_protocol::Message::Request(request);
+        let len = link_protocol::encode(Header::new(7, 1), &message, &mut bytes).unwrap();
+        bytes[..len].to_vec()
+    };
+    let status = frame(Request::Status).repeat(100);
+    for _ in 0..2000 {
+        driver.write(&status).unwrap();
+    }
+    let pressed = Instant::now();
+    driver.write(&frame(Request::EStop)).unwrap();
+    sleep(Duration::from_millis(100));
+    let before = robot.until_stop(&Request::EStop, Duration::from_secs(5));
+    let took = pressed.elapsed();
+    assert!(
+        before.is_some_and(|before| before < ARRIVED),
+        "behind {before:?} bytes"
+    );
+    assert!(took < Duration::from_millis(200), "{took:?}");
+}
+
+#[cfg(unix)]
+#[test]
+fn sixty_slow_connections_delay_no_stop() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut robot = SilentRobot::at(folder.path());
+    let lab = Lab::start(folder.path(), "robot");
+    let mut driver = lab.link(&[]).unwrap();
+    driver.until_wheel(true, false);
+    let slow: Vec<TcpStream> = (0..60)
+        .map(|_| {
+            let mut stream = TcpStream::connect(&lab.host).unwrap();
+            stream.write_all(b"GET / HTTP/1.1\r\nHost: ").unwrap();
+            stream
+        })
+        .collect();
+    let arrived = Instant::now();
+    let mut watcher = lab.link(&[]).unwrap();
+    watcher.ask("estop");
+    assert!(
+        robot
+            .until_stop(&Request::EStop, Duration::from_secs(5))
+            .is_some()
+    );
+    let took = arrived.elapsed();
+    assert!(
+        took < Duration::from_millis(200),
+        "with its connection {took:?}"
+    );
+    drop(slow);
 }
 
 #[test]

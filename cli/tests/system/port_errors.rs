@@ -64,6 +64,7 @@ impl Drop for Device {
 fn without_times() -> insta::Settings {
     let mut settings = insta::Settings::clone_current();
     settings.add_filter(r"in \d+ ms", "in [TIME] ms");
+    settings.add_filter(r"for \d+\.\d s", "for [TIME] s");
     // A greeting's nonce is drawn, and a small one is shorter.
     settings.add_filter(r"\(\d+ bytes\) sent", "([N] bytes) sent");
     settings.add_filter(
@@ -97,7 +98,10 @@ fn the_first_day_quotes_what_is_said() {
 #[test]
 fn a_silent_port() {
     let device = Device::new(|_| Vec::new());
-    without_times().bind(|| insta::assert_snapshot!(device.sentence(), @"error: while connecting: no answer after 5 tries in [TIME] ms (5 frames ([N] bytes) sent, 4 of them again; 0 frames ([N] bytes) received, [N] broken, 0 foreign); is the robot on and paired, and is this its port? Without its Bluetooth module's STATE wire it hears and never answers"));
+    without_times().bind(|| insta::assert_snapshot!(device.sentence(), @r"
+note: while connecting: nothing valid heard from the robot for [TIME] s; still trying.
+error: while connecting: no answer after 5 tries in [TIME] ms (5 frames ([N] bytes) sent, 4 of them again; 0 frames ([N] bytes) received, [N] broken, 0 foreign); is the robot on and paired, and is this its port? Without its Bluetooth module's STATE wire it hears and never answers
+"));
 }
 
 #[test]
@@ -109,7 +113,10 @@ fn a_device_at_another_speed() {
             .chain([0])
             .collect()
     });
-    without_times().bind(|| insta::assert_snapshot!(device.sentence(), @"error: while connecting: no answer after 5 tries in [TIME] ms (5 frames ([N] bytes) sent, 4 of them again; 0 frames ([N] bytes) received, [N] broken, 0 foreign); bytes come but none make sense: is this the robot's port, is its Bluetooth module set to 115200 baud (AT+UART=115200,0,0; a robot built for another speed wants --baud), and are all grounds joined?"));
+    without_times().bind(|| insta::assert_snapshot!(device.sentence(), @r"
+note: while connecting: nothing valid heard from the robot for [TIME] s; still trying.
+error: while connecting: no answer after 5 tries in [TIME] ms (5 frames ([N] bytes) sent, 4 of them again; 0 frames ([N] bytes) received, [N] broken, 0 foreign); bytes come but none make sense: is this the robot's port, is its Bluetooth module set to 115200 baud (AT+UART=115200,0,0; a robot built for another speed wants --baud), and are all grounds joined?
+"));
 }
 
 /// The line runs at the speed of the firmware's build, as the other end sees it.

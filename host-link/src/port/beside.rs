@@ -8,12 +8,12 @@ use std::os::fd::OwnedFd;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::event::PollFlags;
 use rustix::fs::{Mode, OFlags};
 use rustix::io::Errno;
 use rustix::termios::{QueueSelector, isatty, tcflush};
 
-use super::Port;
+use super::{Port, tty};
 
 /// A device that another program has open, opened beside it.
 #[derive(Debug)]
@@ -40,17 +40,6 @@ impl BesidePort {
             opened: Instant::now(),
         })
     }
-
-    fn wait(&self, wanted: PollFlags, timeout: Duration) -> io::Result<()> {
-        let timeout = Timespec {
-            tv_sec: i64::try_from(timeout.as_secs()).unwrap_or(i64::MAX),
-            tv_nsec: timeout.subsec_nanos().into(),
-        };
-        match poll(&mut [PollFd::new(&self.device, wanted)], Some(&timeout)) {
-            Ok(_) | Err(Errno::INTR) => Ok(()),
-            Err(errno) => Err(errno.into()),
-        }
-    }
 }
 
 impl Port for BesidePort {
@@ -58,7 +47,7 @@ impl Port for BesidePort {
         if buf.is_empty() {
             return Ok(0);
         }
-        self.wait(PollFlags::IN, timeout)?;
+        tty::wait(&self.device, PollFlags::IN, timeout)?;
         match rustix::io::read(&self.device, buf) {
             Ok(0) => Err(io::Error::new(
                 io::ErrorKind::UnexpectedEof,
@@ -71,22 +60,11 @@ impl Port for BesidePort {
     }
 
     fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
-        let until = self.opened.elapsed() + Duration::from_secs(1);
-        let mut rest = bytes;
-        while !rest.is_empty() {
-            match rustix::io::write(&self.device, rest) {
-                Ok(count) => rest = rest.get(count..).unwrap_or_default(),
-                Err(Errno::AGAIN | Errno::INTR) => {
-                    let left = until.saturating_sub(self.opened.elapsed());
-                    if left.is_zero() {
-                        return Err(io::ErrorKind::TimedOut.into());
-                    }
-                    self.wait(PollFlags::OUT, left)?;
-                }
-                Err(errno) => return Err(errno.into()),
-            }
-        }
-        Ok(())
+        tty::write_all(&self.device, bytes, Duration::from_secs(1))
+    }
+
+    fn write_ready(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        tty::write_ready(&self.device, bytes)
     }
 
     fn now(&self) -> Duration {

@@ -1,11 +1,20 @@
 //! A real serial port: a cable, a Bluetooth module, or a pseudo-terminal opened by path.
 
-use std::io::{self, Read, Write};
+#[cfg(not(unix))]
+use std::io::Write;
+use std::io::{self, Read};
+#[cfg(unix)]
+use std::os::fd::OwnedFd;
 use std::time::{Duration, Instant};
 
 use serialport::{ClearBuffer, SerialPort as _};
 
 use super::Port;
+#[cfg(unix)]
+use super::tty;
+
+/// Longest wait for a port that takes no byte.
+const STUCK: Duration = Duration::from_secs(1);
 
 #[cfg(unix)]
 type Native = serialport::TTYPort;
@@ -65,6 +74,9 @@ pub enum OpenError {
 #[derive(Debug)]
 pub struct SerialPort {
     port: Native,
+    /// The same device, opened a second time so that writes do not wait.
+    #[cfg(unix)]
+    writer: OwnedFd,
     opened: Instant,
 }
 
@@ -75,7 +87,7 @@ impl SerialPort {
     /// [`OpenError`], one kind for each thing that an operator can mend.
     pub fn open(path: &str, baud: u32) -> Result<Self, OpenError> {
         #[cfg(unix)]
-        let _door = Door::of(path);
+        let second = SecondOpening::of(path);
         let port = serialport::new(path, baud)
             .timeout(Duration::from_millis(10))
             .open_native()
@@ -84,6 +96,11 @@ impl SerialPort {
         let _ = port.clear(ClearBuffer::Input);
         Ok(Self {
             port,
+            #[cfg(unix)]
+            writer: second.into_writer().map_err(|error| OpenError::Other {
+                path: path.to_owned(),
+                reason: error.to_string(),
+            })?,
             opened: Instant::now(),
         })
     }
@@ -151,26 +168,38 @@ fn owning_group(_path: &str) -> Option<String> {
     None
 }
 
-/// Opens a device again for others once it is dropped. Opening it as a port locks it twice: by `flock`, and by a mark on the
-/// device that turns everybody away, also from an opening that fails on the first lock, and that outlives the open file.
+/// A device opened before it is opened as a port, without waiting for it. Opening it as a port locks it twice: by `flock`, and by
+/// a mark on the device that turns everybody away, also from an opening that fails on the first lock, and that outlives the open
+/// file. The mark is removed through this opening, whatever comes of the port's.
 #[cfg(unix)]
-struct Door(Option<std::os::fd::OwnedFd>);
+struct SecondOpening(rustix::io::Result<OwnedFd>);
 
 #[cfg(unix)]
-impl Door {
+impl SecondOpening {
     fn of(path: &str) -> Self {
         use rustix::fs::{Mode, OFlags};
         let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC | OFlags::NONBLOCK;
-        Self(rustix::fs::open(path, flags, Mode::empty()).ok())
+        Self(rustix::fs::open(path, flags, Mode::empty()))
+    }
+
+    /// Keeps the opening, for writes.
+    fn into_writer(mut self) -> io::Result<OwnedFd> {
+        self.unmark();
+        let taken = std::mem::replace(&mut self.0, Err(rustix::io::Errno::BADF));
+        Ok(taken?)
+    }
+
+    fn unmark(&self) {
+        if let Ok(device) = &self.0 {
+            let _ = rustix::termios::ioctl_tiocnxcl(device);
+        }
     }
 }
 
 #[cfg(unix)]
-impl Drop for Door {
+impl Drop for SecondOpening {
     fn drop(&mut self) {
-        if let Some(device) = &self.0 {
-            let _ = rustix::termios::ioctl_tiocnxcl(device);
-        }
+        self.unmark();
     }
 }
 
@@ -204,10 +233,35 @@ impl Port for SerialPort {
         }
     }
 
+    /// A port that takes no byte for a second is stuck, not busy: 128 bytes need 11 ms at 115 200 baud.
+    #[cfg(unix)]
     fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
-        // A port that takes no byte for this long is stuck, not busy: 128 bytes need 11 ms at 115 200 baud.
-        self.port.set_timeout(Duration::from_secs(1))?;
+        tty::write_all(&self.writer, bytes, STUCK)
+    }
+
+    #[cfg(unix)]
+    fn write_ready(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        tty::write_ready(&self.writer, bytes)
+    }
+
+    #[cfg(not(unix))]
+    fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.port.set_timeout(STUCK)?;
         self.port.write_all(bytes)
+    }
+
+    #[cfg(not(unix))]
+    fn write_ready(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.port.set_timeout(Duration::from_millis(20))?;
+        match self.port.write(bytes) {
+            Err(error) if error.kind() == io::ErrorKind::TimedOut => Ok(0),
+            written => written,
+        }
+    }
+
+    fn discard_unsent(&mut self) {
+        // A driver that cannot sends the bytes all the same.
+        let _ = self.port.clear(ClearBuffer::Output);
     }
 
     fn now(&self) -> Duration {

@@ -14,6 +14,8 @@ pub struct TcpPort {
     opened: Instant,
 }
 
+/// Longest wait for an address to answer.
+const TO_CONNECT: Duration = Duration::from_secs(3);
 /// How often an absent client is looked for.
 const LOOK: Duration = Duration::from_millis(5);
 
@@ -37,8 +39,15 @@ impl TcpPort {
     /// # Errors
     /// What the system says: refused, unreachable, unknown name.
     pub fn connect(address: impl ToSocketAddrs) -> io::Result<Self> {
-        let stream = TcpStream::connect(address)?;
+        let mut last = io::ErrorKind::NotFound.into();
+        let stream = address.to_socket_addrs()?.find_map(|address| {
+            TcpStream::connect_timeout(&address, TO_CONNECT)
+                .map_err(|error| last = error)
+                .ok()
+        });
+        let stream = stream.ok_or(last)?;
         stream.set_nodelay(true)?;
+        stream.set_write_timeout(Some(Duration::from_secs(1)))?;
         Ok(Self {
             listener: None,
             stream: Some(stream),
@@ -132,6 +141,22 @@ impl Port for TcpPort {
         match stream.write_all(bytes) {
             Ok(()) => Ok(()),
             Err(error) => self.gone(error),
+        }
+    }
+
+    fn write_ready(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.accept()?;
+        let Some(stream) = &mut self.stream else {
+            return Ok(bytes.len());
+        };
+        let written = stream
+            .set_nonblocking(true)
+            .and_then(|()| stream.write(bytes));
+        stream.set_nonblocking(false)?;
+        match written {
+            Ok(count) => Ok(count),
+            Err(error) if transient(&error) => Ok(0),
+            Err(error) => self.gone(error).map(|()| bytes.len()),
         }
     }
 

@@ -70,6 +70,27 @@ impl<P: Port, S: FnMut(TracedFrame<'_>) + Send> Port for TracedPort<P, S> {
     }
 
     fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.show_written(bytes);
+        self.port.write(bytes)
+    }
+
+    fn write_ready(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let count = self.port.write_ready(bytes)?;
+        self.show_written(bytes.get(..count).unwrap_or(bytes));
+        Ok(count)
+    }
+
+    fn discard_unsent(&mut self) {
+        self.port.discard_unsent();
+    }
+
+    fn now(&self) -> Duration {
+        self.port.now()
+    }
+}
+
+impl<P: Port, S: FnMut(TracedFrame<'_>) + Send> TracedPort<P, S> {
+    fn show_written(&mut self, bytes: &[u8]) {
         let at = self.port.now();
         let (cutter, sink) = (&mut self.written, &mut self.sink);
         cutter.push(bytes, |bytes| {
@@ -79,11 +100,6 @@ impl<P: Port, S: FnMut(TracedFrame<'_>) + Send> Port for TracedPort<P, S> {
                 bytes,
             });
         });
-        self.port.write(bytes)
-    }
-
-    fn now(&self) -> Duration {
-        self.port.now()
     }
 }
 

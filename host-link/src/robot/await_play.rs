@@ -1,19 +1,21 @@
-//! Waiting for the end of a play, over a link that comes and goes: a robot that is no longer heard is looked for, greeted
-//! anew and asked what became of the play. It may have gone on (detached), stopped by itself, or restarted.
+//! Wait for the end of a play, over a link that comes and goes: a robot that is no longer heard is greeted
+//! anew and its status requested. It may have gone on (detached), stopped by itself, or restarted.
 
 use std::ops::ControlFlow;
 use std::time::Duration;
 
 use link_protocol::{Flags, Reply, Request, StateName, Status, StopCause, Telemetry};
 
-use super::{BEAT, Robot};
+use super::Robot;
+use super::connection::Connection;
 use crate::port::Port;
-use crate::session::{Event, LinkError, Ticket};
+use crate::session::{Event, LONGEST_SILENCE, LinkError, Ticket};
 
 const WAITING: &str = "waiting for the end of the play";
 /// Time after which the status is asked for when no telemetry tells it.
 const QUIET: Duration = Duration::from_secs(1);
-/// How long a robot that does not answer is looked for; one that plays detached until so long after its end.
+/// A robot that plays detached is searched for until so long after the end of its play. One whose play needs the link has stopped
+/// by itself: it is given up after five seconds of silence, when the tries under way are over.
 const SEARCH: Duration = Duration::from_secs(30);
 /// How long a robot that has told the end of its play is asked for its status as well. It may hear nothing any more: that is
 /// the most frequent reason to stop.
@@ -36,7 +38,7 @@ pub fn time_left(status: &Status) -> Option<Duration> {
     Some(Duration::from_micros(u64::try_from(us).unwrap_or(u64::MAX)))
 }
 
-/// What is known, and what was asked to know more.
+/// State of the play as far as it is known, and the requests under way.
 struct Watch {
     /// When the robot last told something, on the port's clock.
     told: Duration,
@@ -80,8 +82,8 @@ fn told_by(telemetry: &Telemetry, before: Option<&Status>) -> Status {
 
 impl<P: Port> Robot<P> {
     /// Waits until the robot has played its last cycle. `watch` sees each telemetry, at least every 20 ms of the port's
-    /// clock, and may break off, which stops the robot. Where the link is lost meanwhile, the robot is looked for for 30 s,
-    /// one that plays detached until 30 s after its end. A robot that still tells that its play is over is believed after
+    /// clock, and may break off, which stops the robot. If the link is lost meanwhile, the robot is greeted again; it is given up
+    /// after five seconds of silence, one that plays detached 30 s after its end. A robot that still tells that its play is over is believed after
     /// 1.5 s, whether it answers or not.
     ///
     /// Returns the status at the end.
@@ -109,102 +111,112 @@ impl<P: Port> Robot<P> {
         &mut self,
         mut watch: impl FnMut(Option<&Telemetry>) -> ControlFlow<()>,
     ) -> Result<Option<Status>, LinkError> {
-        // What was said before the play began tells nothing about its end.
-        self.latest = None;
-        let now = self.port.now();
+        // Telemetry from before the play says nothing about its end.
+        self.connection.latest = None;
+        let now = self.connection.now();
         let mut known = Watch {
             told: now,
-            search_until: now + SEARCH,
-            asked: Some(self.session.request(now, Request::Status)),
+            search_until: now + LONGEST_SILENCE,
+            asked: Some(self.connection.session.request(now, Request::Status)),
             greeted: None,
             status: None,
             ended: None,
         };
-        loop {
-            let beat = self.port.now() + BEAT;
-            let event = self.step(beat, WAITING)?;
-            if watch(self.latest.as_ref()).is_break() {
-                return Ok(None);
+        let Self { connection, hello } = self;
+        let status = connection.wait(WAITING, |connection, event| {
+            if watch(connection.latest.as_ref()).is_break() {
+                return Ok(ControlFlow::Break(None));
             }
-            if let Some(status) = self.learn(event, &mut known)? {
-                return finished(status).map(Some);
+            let over = learn(connection, event, &mut known)?;
+            if let Some(greeted) = connection.session.hello() {
+                *hello = *greeted;
             }
-            if let Some(status) = known.last_word(self.port.now()) {
-                if let Some(asked) = known.asked {
-                    self.session.forget(asked);
+            if over.is_some() {
+                return Ok(ControlFlow::Break(over));
+            }
+            let last = known.last_word(connection.now());
+            if let (Some(_), Some(asked)) = (&last, known.asked) {
+                connection.session.forget(asked);
+            }
+            Ok(match last {
+                Some(status) => ControlFlow::Break(Some(status)),
+                None => ControlFlow::Continue(()),
+            })
+        })?;
+        status.map(finished).transpose()
+    }
+}
+
+/// Takes an event; returns the status if the play is over.
+fn learn<P: Port>(
+    connection: &mut Connection<P>,
+    event: Option<Event>,
+    known: &mut Watch,
+) -> Result<Option<Status>, LinkError> {
+    let now = connection.now();
+    match event {
+        Some(Event::Telemetry { telemetry, .. }) => {
+            known.told = now;
+            known.search_until = known.search_until.max(now + LONGEST_SILENCE);
+            if at_rest(telemetry.state, telemetry.cause) {
+                let since = known.ended.map_or(now, |(since, _)| since);
+                known.ended = Some((since, telemetry));
+                ask_status(connection, known);
+            } else {
+                known.ended = None;
+            }
+        }
+        Some(Event::Answered { ticket, reply }) if known.asked == Some(ticket) => {
+            known.asked = None;
+            known.told = now;
+            if let Reply::Status(status) = reply {
+                known.status = Some(status);
+                if at_rest(status.state, status.cause) {
+                    return Ok(Some(status));
                 }
-                return finished(status).map(Some);
+                known.search_until = now
+                    + if status.flags.contains(Flags::DETACHED) {
+                        time_left(&status).unwrap_or_default() + SEARCH
+                    } else {
+                        LONGEST_SILENCE
+                    };
+            }
+        }
+        Some(Event::Connected { ticket, .. }) if known.greeted == Some(ticket) => {
+            known.greeted = None;
+            ask_status(connection, known);
+        }
+        Some(Event::Failed { ticket, error })
+            if known.asked == Some(ticket) || known.greeted == Some(ticket) =>
+        {
+            let lost = matches!(
+                error,
+                LinkError::NoAnswer { .. }
+                    | LinkError::SessionLost { .. }
+                    | LinkError::NotConnected { .. }
+            );
+            if !lost || now >= known.search_until {
+                return Err(error);
+            }
+            known.asked = None;
+            known.greeted = Some(connection.session.connect(now));
+        }
+        _ => {
+            if now.saturating_sub(known.told) >= QUIET {
+                ask_status(connection, known);
             }
         }
     }
+    Ok(None)
+}
 
-    /// Takes an event; gives the status where the play is over.
-    fn learn(
-        &mut self,
-        event: Option<Event>,
-        known: &mut Watch,
-    ) -> Result<Option<Status>, LinkError> {
-        let now = self.port.now();
-        match event {
-            Some(Event::Telemetry { telemetry, .. }) => {
-                known.told = now;
-                known.search_until = known.search_until.max(now + SEARCH);
-                if at_rest(telemetry.state, telemetry.cause) {
-                    let since = known.ended.map_or(now, |(since, _)| since);
-                    known.ended = Some((since, telemetry));
-                    self.ask_status(known);
-                } else {
-                    known.ended = None;
-                }
-            }
-            Some(Event::Answered { ticket, reply }) if known.asked == Some(ticket) => {
-                known.asked = None;
-                known.told = now;
-                if let Reply::Status(status) = reply {
-                    known.status = Some(status);
-                    if at_rest(status.state, status.cause) {
-                        return Ok(Some(status));
-                    }
-                    let alone = status.flags.contains(Flags::DETACHED);
-                    let left = time_left(&status).filter(|_| alone).unwrap_or_default();
-                    known.search_until = now + left + SEARCH;
-                }
-            }
-            Some(Event::Connected { ticket, .. }) if known.greeted == Some(ticket) => {
-                known.greeted = None;
-                if let Some(hello) = self.session.hello() {
-                    self.hello = *hello;
-                }
-                self.ask_status(known);
-            }
-            Some(Event::Failed { ticket, error })
-                if known.asked == Some(ticket) || known.greeted == Some(ticket) =>
-            {
-                let lost = matches!(
-                    error,
-                    LinkError::NoAnswer { .. }
-                        | LinkError::SessionLost { .. }
-                        | LinkError::NotConnected { .. }
-                );
-                if !lost || now >= known.search_until {
-                    return Err(error);
-                }
-                known.asked = None;
-                known.greeted = Some(self.session.connect(now));
-            }
-            _ => {
-                if now.saturating_sub(known.told) >= QUIET {
-                    self.ask_status(known);
-                }
-            }
-        }
-        Ok(None)
-    }
-
-    fn ask_status(&mut self, known: &mut Watch) {
-        if known.asked.is_none() && known.greeted.is_none() {
-            known.asked = Some(self.session.request(self.port.now(), Request::Status));
-        }
+fn ask_status<P: Port>(connection: &mut Connection<P>, known: &mut Watch) {
+    if known.asked.is_none() && known.greeted.is_none() {
+        known.asked = Some(
+            connection
+                .session
+                .request(connection.now(), Request::Status),
+        );
     }
 }
 

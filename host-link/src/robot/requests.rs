@@ -8,9 +8,9 @@ use link_protocol::{
     PulseRange, Reply, Request, ServoSettings, StateName, Status, TableInfo,
 };
 
-use super::{BEAT, Robot, StoppedBy};
+use super::{Halt, Robot, StoppedBy, stopped_by};
 use crate::port::Port;
-use crate::session::{Event, LinkError};
+use crate::session::LinkError;
 
 /// Times that a robot is asked whether it has stored something, and the time between.
 const STORE_LOOKS: u32 = 25;
@@ -189,7 +189,7 @@ impl<P: Port> Robot<P> {
     /// # Errors
     /// The link's.
     pub fn stop(&mut self) -> Result<StoppedBy, LinkError> {
-        self.halt(Request::Stop, "stopping")
+        self.halt(Halt::Stop, "stopping")
     }
 
     /// Drops the pulses at once, latched until cleared. Says what ended the motion.
@@ -197,26 +197,15 @@ impl<P: Port> Robot<P> {
     /// # Errors
     /// The link's.
     pub fn estop(&mut self) -> Result<StoppedBy, LinkError> {
-        self.halt(Request::EStop, "e-stopping")
+        self.halt(Halt::EStop, "e-stopping")
     }
 
-    fn halt(&mut self, request: Request, doing: &'static str) -> Result<StoppedBy, LinkError> {
-        let wanted = self.session.request(self.port.now(), request);
-        // What the robot told before it obeyed tells nothing of what it does now.
-        self.latest = None;
-        loop {
-            match self.step(self.port.now() + BEAT, doing)? {
-                Some(Event::Answered { ticket, .. }) if ticket == wanted => {
-                    self.latest = None;
-                    return Ok(StoppedBy::Request);
-                }
-                Some(Event::StoppedByItself { ticket, cause }) if ticket == wanted => {
-                    return Ok(StoppedBy::Itself(cause));
-                }
-                Some(Event::Failed { ticket, error }) if ticket == wanted => return Err(error),
-                _ => {}
-            }
+    fn halt(&mut self, halt: Halt, doing: &'static str) -> Result<StoppedBy, LinkError> {
+        let by = stopped_by(&self.connection.halt(halt, doing)?);
+        if by == StoppedBy::Request {
+            self.connection.latest = None;
         }
+        Ok(by)
     }
 
     /// Clears the e-stops that the robot counts now, to Stopped, without arming.
@@ -318,7 +307,7 @@ impl<P: Port> Robot<P> {
     pub fn set_key(&mut self, key: Option<Key>) -> Result<(), LinkError> {
         let doing = "setting the key";
         self.order(Request::SetKey(key), doing)?;
-        self.session.set_key(key);
+        self.connection.session.set_key(key);
         self.reconnect()?;
         for _ in 0..STORE_LOOKS {
             if !self.status()?.flags.contains(Flags::UNSAVED) {
@@ -334,7 +323,7 @@ impl<P: Port> Robot<P> {
         match self.ask(request, doing)? {
             Reply::Done => {
                 // What the robot told before it obeyed tells nothing of what it does now.
-                self.latest = None;
+                self.connection.latest = None;
                 Ok(())
             }
             reply => Err(wrong(doing, &reply)),

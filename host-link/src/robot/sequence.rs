@@ -8,7 +8,7 @@ use std::time::Duration;
 use link_protocol::{Flags, Refusal, Status, Telemetry, crc32c};
 
 use super::await_play::{at_rest, finished};
-use super::{BEAT, Robot};
+use super::{Robot, check_heard};
 use crate::port::Port;
 use crate::session::{Event, Follower, LinkError};
 
@@ -119,29 +119,36 @@ impl Sequence {
         robot: &mut Robot<P>,
         watch: &mut impl FnMut(SequenceProgress<'_>) -> ControlFlow<()>,
     ) -> Result<ControlFlow<()>, LinkError> {
-        loop {
-            robot.step(robot.port.now() + BEAT, DOING)?;
-            if let Some(told) = robot.latest {
-                if at_rest(told.state, told.cause) {
-                    finished(robot.status()?)?;
-                    return Err(self.out_of_step());
+        let mut over = false;
+        let connection = &mut robot.connection;
+        let flow = connection.wait(DOING, |connection, _| {
+            if let Some(telemetry) = connection.latest {
+                if at_rest(telemetry.state, telemetry.cause) {
+                    over = true;
+                    return Ok(ControlFlow::Break(ControlFlow::Continue(())));
                 }
-                if !told.flags.contains(Flags::SWAP_PENDING) {
+                if !telemetry.flags.contains(Flags::SWAP_PENDING) {
                     self.playing = self.accepted - 1;
-                    return Ok(ControlFlow::Continue(()));
+                    return Ok(ControlFlow::Break(ControlFlow::Continue(())));
                 }
             }
-            if watch(self.progress(robot)).is_break() {
-                return Ok(ControlFlow::Break(()));
+            if watch(self.progress(connection.latest.as_ref())).is_break() {
+                return Ok(ControlFlow::Break(ControlFlow::Break(())));
             }
-            robot.check_heard(DOING)?;
+            check_heard(connection, DOING)?;
+            Ok(ControlFlow::Continue(()))
+        })?;
+        if over {
+            finished(robot.status()?)?;
+            return Err(self.out_of_step());
         }
+        Ok(flow)
     }
 
-    fn progress<'a, P: Port>(&self, robot: &'a Robot<P>) -> SequenceProgress<'a> {
+    fn progress<'a>(&self, telemetry: Option<&'a Telemetry>) -> SequenceProgress<'a> {
         SequenceProgress {
             leg: self.playing,
-            telemetry: robot.latest.as_ref(),
+            telemetry,
         }
     }
 
@@ -154,7 +161,7 @@ impl Sequence {
             return Ok(ControlFlow::Continue(()));
         };
         let before = self.legs.get(self.playing).map(Leg::duration);
-        let now = robot.port.now();
+        let now = robot.connection.now();
         let deadline = now + before.unwrap_or_default() + GRACE;
         let follower = Follower {
             cycles: leg.cycles,
@@ -162,43 +169,50 @@ impl Sequence {
             settings_crc32: self.settings_crc32,
         };
         let wanted = robot
+            .connection
             .session
             .upload_follower(now, &leg.table, follower, deadline);
-        loop {
-            match robot.step(robot.port.now() + BEAT, DOING)? {
+        let sent = robot.connection.wait(DOING, |connection, event| {
+            match event {
                 Some(Event::Uploaded { ticket, .. }) if ticket == wanted => {
-                    return Ok(self.accept(robot));
+                    return Ok(ControlFlow::Break(Some(Ok(()))));
                 }
                 Some(Event::Failed { ticket, error }) if ticket == wanted => {
-                    return match error {
-                        // Room was seen: what waits is this very table, and the answer to it was lost.
-                        LinkError::Refused {
-                            refusal: Refusal::SwapPending,
-                            ..
-                        } => Ok(self.accept(robot)),
-                        LinkError::Refused {
-                            refusal: Refusal::WrongState(_),
-                            ..
-                        } => {
-                            finished(robot.status()?)?;
-                            Err(self.out_of_step())
-                        }
-                        error => Err(error),
-                    };
+                    return Ok(ControlFlow::Break(Some(Err(error))));
                 }
                 _ => {}
             }
-            if watch(self.progress(robot)).is_break() {
-                robot.session.cancel_upload();
-                return Ok(ControlFlow::Break(()));
+            if watch(self.progress(connection.latest.as_ref())).is_break() {
+                connection.session.cancel_upload();
+                return Ok(ControlFlow::Break(None));
             }
+            Ok(ControlFlow::Continue(()))
+        })?;
+        match sent {
+            None => Ok(ControlFlow::Break(())),
+            // Space was seen: if a table waits, it is this one, and the reply was lost.
+            Some(
+                Ok(())
+                | Err(LinkError::Refused {
+                    refusal: Refusal::SwapPending,
+                    ..
+                }),
+            ) => Ok(self.accept(robot)),
+            Some(Err(LinkError::Refused {
+                refusal: Refusal::WrongState(_),
+                ..
+            })) => {
+                finished(robot.status()?)?;
+                Err(self.out_of_step())
+            }
+            Some(Err(error)) => Err(error),
         }
     }
 
-    /// What was told before the robot took it tells nothing of whether it still waits.
+    /// Telemetry from before the robot took the table says nothing about whether it still waits.
     fn accept<P: Port>(&mut self, robot: &mut Robot<P>) -> ControlFlow<()> {
         self.accepted += 1;
-        robot.latest = None;
+        robot.connection.latest = None;
         ControlFlow::Continue(())
     }
 

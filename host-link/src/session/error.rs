@@ -47,6 +47,17 @@ pub enum LinkError {
         /// What crossed the link.
         counters: Box<LinkCounters>,
     },
+    /// The robot answers that it is at it, and does not finish.
+    #[error(
+        "while {doing}: the robot has answered for {} s that it is still working at it, which no request takes; look at its status, and restart it if it says nothing else",
+        waited.as_secs()
+    )]
+    StillWorking {
+        /// What was being done.
+        doing: &'static str,
+        /// Time since the request was first sent.
+        waited: Duration,
+    },
     /// The deadline passed although the link works.
     #[error("while {doing}: not done after {} ms ({done} of {total} bytes arrived; {counters}); try again: it goes on where it was", waited.as_millis())]
     Deadline {

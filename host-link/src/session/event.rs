@@ -1,4 +1,4 @@
-//! What a session tells its shell.
+//! Events of a session.
 
 use std::time::Duration;
 
@@ -7,7 +7,7 @@ use link_protocol::{Reply, StopCause, TableInfo, Telemetry};
 use super::error::LinkError;
 use super::upload::UploadProgress;
 
-/// Names something asked until its event comes.
+/// Names a request until the event that ends it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Ticket(pub(super) u64);
 
@@ -18,7 +18,7 @@ impl Ticket {
     }
 }
 
-/// What a session tells its shell.
+/// Something that happened in a session.
 #[derive(Debug)]
 pub enum Event {
     /// A session is open. `restarted`: the robot has booted since the session before.
@@ -71,4 +71,18 @@ pub enum Event {
         /// When it arrived, on the host's clock.
         at: Duration,
     },
+}
+
+impl Event {
+    /// Ticket that ends with this event; `None` for progress and telemetry, which end nothing.
+    pub fn ended(&self) -> Option<Ticket> {
+        match self {
+            Self::Connected { ticket, .. }
+            | Self::Answered { ticket, .. }
+            | Self::StoppedByItself { ticket, .. }
+            | Self::Uploaded { ticket, .. }
+            | Self::Failed { ticket, .. } => Some(*ticket),
+            Self::Progress { .. } | Self::Telemetry { .. } => None,
+        }
+    }
 }

@@ -15,6 +15,8 @@ use super::{Event, Link, Owner, Pending, Session, describe};
 const BUSY_WAIT: Duration = Duration::from_millis(100);
 /// Times in a row that a robot may be busy: checking a table takes some seconds.
 const BUSY_TRIES: u32 = 50;
+/// Longest time for which a robot may answer that it is still working at a request. A check of the largest table takes 5 s.
+pub const LONGEST_WORK: Duration = Duration::from_secs(20);
 /// For so long a robot may say that it has heard nothing fresh yet.
 const FRESH_PATIENCE: Duration = Duration::from_secs(3);
 /// A stop that is unanswered for so long waits behind something: the lease may have been quicker.
@@ -73,6 +75,7 @@ impl Session {
             // Without a session of our own any robot on the line is the one that is to stop.
             Message::Telemetry(telemetry) if !ours && matches!(self.link, Link::Closed) => {
                 self.counters.foreign += 1;
+                self.last_heard = now;
                 self.stopped_by_itself(&telemetry, now);
             }
             _ if !ours => self.counters.foreign += 1,
@@ -217,6 +220,16 @@ impl Session {
                 self.busy = 0;
             }
             match (reply, pending.owner) {
+                (Reply::Working, owner) if since_first >= LONGEST_WORK => {
+                    let doing = describe(&pending.request);
+                    let waited = since_first;
+                    match owner {
+                        Owner::Ticket(ticket) => {
+                            self.fail(ticket, LinkError::StillWorking { doing, waited });
+                        }
+                        Owner::Upload => self.end_upload(LinkError::StillWorking { doing, waited }),
+                    }
+                }
                 (Reply::Working, _) => {
                     // Heard, and at it: the tries start anew.
                     let next_try = now + self.trip.wait(2);

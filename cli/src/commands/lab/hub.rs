@@ -1,47 +1,66 @@
-//! Between the robot's port and the pages: bytes from the robot go to all of them, bytes to it come from the one that drives. The
-//! others watch, and may stop the robot.
+//! Hub between the robot's port and the pages: the robot's bytes go to all of them, bytes for it come from the one that has the
+//! wheel. The others watch, and may stop the robot.
+//!
+//! Nothing in it waits: every inbox is bounded, the port takes what it takes, and stops have an inbox of their own that is emptied
+//! first.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, TrySendError};
-use std::time::Duration;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, TrySendError, sync_channel};
+use std::time::{Duration, Instant};
 
+use host_link::robot::Halt;
 use serde::{Deserialize, Serialize};
 
 use crate::commands::robot::{Heard, LentPort};
 
-/// How long a turn waits for bytes of the robot: what a stop of a page waits at most before it leaves.
+/// Longest wait for bytes of the robot in one turn: so long a stop of a page waits at most.
 const TURN: Duration = Duration::from_millis(2);
+/// Most messages of one kind that are taken in a turn.
+const MOST_A_TURN: usize = 64;
+/// Places in an inbox.
+const INBOX: usize = 256;
+/// Longest wait for the robot to acknowledge the stop with which the hub ends.
+const TO_STOP: Duration = Duration::from_millis(500);
 
-/// Names a page while it is connected.
+/// Names a page while it is connected; never 0.
 pub(super) type PageId = u64;
 
-/// What a page wants.
+/// Message of a page that is no frame and no stop.
 pub(super) enum FromPage {
-    /// It came; what it is told goes here.
+    /// It came; messages to it go here.
     Came(SyncSender<ToPage>),
-    /// Whole frames for the robot.
-    Frames(Vec<u8>),
-    /// Something in words.
-    Asks(Ask),
+    /// It requests or leaves the wheel.
+    Wheel { wanted: bool },
+    /// It gives no sign of life.
+    Frozen,
     /// It went.
     Left,
 }
 
-/// What a page is told.
+/// Stop that a page sends.
+pub(super) enum FromPageStop {
+    /// In words.
+    Halt(Halt),
+    /// Frames of its own session with a stop among them.
+    Frames(Vec<u8>),
+}
+
+/// Message to a page.
 #[derive(Clone)]
 pub(super) enum ToPage {
-    /// What the robot sent.
+    /// Bytes of the robot.
     Bytes(Arc<[u8]>),
-    /// How things stand.
+    /// State of wheel and port.
     Says(Says),
 }
 
-/// What a page may ask in words.
+/// Request of a page in words.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(tag = "ask", rename_all = "lowercase", deny_unknown_fields)]
 pub(super) enum Ask {
-    /// To drive, where nobody does.
+    /// To drive, if nobody does.
     Drive,
     /// To let others drive.
     Watch,
@@ -49,9 +68,11 @@ pub(super) enum Ask {
     Stop,
     /// The robot shall drop its pulses.
     Estop,
+    /// Sign of life of the page's script. A page that has sent one must go on: the browser answers pings for a page that hangs.
+    Here,
 }
 
-/// How things stand, in words.
+/// State of wheel and port, in words.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "told")]
 pub(super) enum Says {
@@ -64,35 +85,106 @@ pub(super) enum Says {
     },
     /// The robot's port.
     Port {
-        /// What it is called.
+        /// Its name.
         name: String,
-        /// Whether it is there.
+        /// It is open.
         open: bool,
-        /// What was said when it went away.
+        /// The system's words when it went away.
         why: Option<String>,
-        /// What the line carries.
+        /// Bytes per second that the line carries.
         bytes_per_second: f64,
     },
-    /// Another page has asked the robot to stop.
+    /// Another page has requested a stop.
     Stopped,
 }
 
-/// Who is connected, and who drives.
-#[derive(Default)]
+/// Sending ends of the hub's inboxes.
+#[derive(Clone)]
+pub(super) struct ToHub {
+    stops: SyncSender<(PageId, FromPageStop)>,
+    words: SyncSender<(PageId, FromPage)>,
+    frames: SyncSender<(PageId, Vec<u8>)>,
+    driver: Arc<AtomicU64>,
+}
+
+/// Receiving ends.
+pub(super) struct Inbox {
+    stops: Receiver<(PageId, FromPageStop)>,
+    words: Receiver<(PageId, FromPage)>,
+    frames: Receiver<(PageId, Vec<u8>)>,
+    driver: Arc<AtomicU64>,
+}
+
+/// Makes the inboxes.
+pub(super) fn inbox() -> (ToHub, Inbox) {
+    let (to_stops, stops) = sync_channel(INBOX);
+    let (to_words, words) = sync_channel(INBOX);
+    let (to_frames, frames) = sync_channel(INBOX);
+    let driver = Arc::new(AtomicU64::new(0));
+    let to_hub = ToHub {
+        stops: to_stops,
+        words: to_words,
+        frames: to_frames,
+        driver: Arc::clone(&driver),
+    };
+    let inbox = Inbox {
+        stops,
+        words,
+        frames,
+        driver,
+    };
+    (to_hub, inbox)
+}
+
+/// The hub has ended.
+pub(super) struct Ended;
+
+impl ToHub {
+    /// Sends a stop. With a full inbox one that says the same is already there.
+    pub(super) fn stop(&self, id: PageId, stop: FromPageStop) -> Result<(), Ended> {
+        match self.stops.try_send((id, stop)) {
+            Ok(()) | Err(TrySendError::Full(_)) => Ok(()),
+            Err(TrySendError::Disconnected(_)) => Err(Ended),
+        }
+    }
+
+    /// Sends frames if the page drives. What does not fit is lost, as on any link.
+    pub(super) fn frames(&self, id: PageId, frames: Vec<u8>) -> Result<(), Ended> {
+        if self.driver.load(Ordering::Relaxed) != id {
+            return Ok(());
+        }
+        match self.frames.try_send((id, frames)) {
+            Ok(()) | Err(TrySendError::Full(_)) => Ok(()),
+            Err(TrySendError::Disconnected(_)) => Err(Ended),
+        }
+    }
+
+    /// Sends another message; waits for a place in the inbox.
+    pub(super) fn word(&self, id: PageId, word: FromPage) -> Result<(), Ended> {
+        self.words.send((id, word)).map_err(|_| Ended)
+    }
+}
+
+/// Connected pages, and the one that drives.
 struct Pages {
     known: BTreeMap<PageId, SyncSender<ToPage>>,
     driver: Option<PageId>,
+    /// The driver, for who sends frames; 0 if there is none.
+    shared: Arc<AtomicU64>,
 }
 
-/// Lives until the interrupt, or until nobody can come any more.
-pub(super) fn run(
-    port: &mut LentPort,
-    inbox: &Receiver<(PageId, FromPage)>,
-    go_on: impl Fn() -> bool,
-) {
-    let mut pages = Pages::default();
+/// Runs until `go_on` returns false, or until nobody can come any more. Then the robot is stopped if a page drove it.
+pub(super) fn run(port: &mut LentPort, inbox: &Inbox, go_on: impl Fn() -> bool) {
+    let mut pages = Pages {
+        known: BTreeMap::new(),
+        driver: None,
+        shared: Arc::clone(&inbox.driver),
+    };
     let mut buf = [0; 512];
     while go_on() {
+        for (_, stop) in inbox.stops.try_iter().take(MOST_A_TURN) {
+            pages.stop(stop, port);
+        }
         match port.read(&mut buf, TURN) {
             Heard::Bytes(0) => {}
             Heard::Bytes(count) => {
@@ -102,19 +194,28 @@ pub(super) fn run(
             Heard::Gone(why) => pages.tell_all(&of_port(port, Some(why))),
             Heard::Back => pages.tell_all(&of_port(port, None)),
         }
-        loop {
-            match inbox.try_recv() {
-                Ok((id, wanted)) => pages.take(id, wanted, port),
+        for _ in 0..MOST_A_TURN {
+            match inbox.words.try_recv() {
+                Ok((id, word)) => pages.take(id, word, port),
                 Err(TryRecvError::Empty) => break,
                 Err(TryRecvError::Disconnected) => return,
             }
         }
+        for (id, frames) in inbox.frames.try_iter().take(MOST_A_TURN) {
+            // Another page may have got the wheel since.
+            if pages.driver == Some(id)
+                && let Some(Heard::Gone(why)) = port.write(&frames)
+            {
+                pages.tell_all(&of_port(port, Some(why)));
+            }
+        }
     }
-    // Nobody will hear of what the robot does next.
     if pages.driver.is_some() {
-        port.stop(false);
-        let mut buf = [0; 512];
-        port.read(&mut buf, TURN);
+        port.stop(Halt::Stop);
+        let begun = Instant::now();
+        while !port.is_stopped() && begun.elapsed() < TO_STOP {
+            port.read(&mut buf, TURN);
+        }
     }
 }
 
@@ -128,42 +229,51 @@ fn of_port(port: &LentPort, why: Option<String>) -> ToPage {
 }
 
 impl Pages {
-    fn take(&mut self, id: PageId, wanted: FromPage, port: &mut LentPort) {
-        match wanted {
+    fn take(&mut self, id: PageId, word: FromPage, port: &LentPort) {
+        match word {
             FromPage::Came(page) => {
                 self.known.insert(id, page);
                 self.tell(id, &of_port(port, None));
-                self.driver.get_or_insert(id);
-                self.tell_of_wheel();
+                self.drive(id);
             }
             FromPage::Left => {
                 self.known.remove(&id);
                 self.leave_wheel(id);
             }
-            FromPage::Frames(frames) if self.driver == Some(id) => {
+            FromPage::Wheel { wanted: true } => {
+                if self.known.contains_key(&id) {
+                    self.drive(id);
+                }
+            }
+            FromPage::Wheel { wanted: false } | FromPage::Frozen => self.leave_wheel(id),
+        }
+    }
+
+    fn stop(&mut self, stop: FromPageStop, port: &mut LentPort) {
+        match stop {
+            FromPageStop::Halt(halt) => {
+                port.stop(halt);
+                self.tell_all(&ToPage::Says(Says::Stopped));
+            }
+            FromPageStop::Frames(frames) => {
                 if let Some(Heard::Gone(why)) = port.write(&frames) {
                     self.tell_all(&of_port(port, Some(why)));
                 }
             }
-            // It drove a moment ago, and does not know yet.
-            FromPage::Frames(_) => {}
-            FromPage::Asks(Ask::Drive) => {
-                if self.known.contains_key(&id) {
-                    self.driver.get_or_insert(id);
-                    self.tell_of_wheel();
-                }
-            }
-            FromPage::Asks(Ask::Watch) => self.leave_wheel(id),
-            FromPage::Asks(ask @ (Ask::Stop | Ask::Estop)) => {
-                port.stop(ask == Ask::Estop);
-                self.tell_all(&ToPage::Says(Says::Stopped));
-            }
         }
+    }
+
+    /// Gives the wheel to a page, if nobody has it.
+    fn drive(&mut self, id: PageId) {
+        let driver = *self.driver.get_or_insert(id);
+        self.shared.store(driver, Ordering::Relaxed);
+        self.tell_of_wheel();
     }
 
     fn leave_wheel(&mut self, id: PageId) {
         if self.driver == Some(id) {
             self.driver = None;
+            self.shared.store(0, Ordering::Relaxed);
             self.tell_of_wheel();
         }
     }
@@ -176,18 +286,18 @@ impl Pages {
         }
     }
 
-    fn tell_all(&mut self, told: &ToPage) {
+    fn tell_all(&mut self, message: &ToPage) {
         for id in self.known.keys().copied().collect::<Vec<_>>() {
-            self.tell(id, told);
+            self.tell(id, message);
         }
     }
 
     /// A page that does not keep up is let go: its link would be older with each byte.
-    fn tell(&mut self, id: PageId, told: &ToPage) {
+    fn tell(&mut self, id: PageId, message: &ToPage) {
         let Some(page) = self.known.get(&id) else {
             return;
         };
-        match page.try_send(told.clone()) {
+        match page.try_send(message.clone()) {
             Ok(()) => {}
             Err(TrySendError::Full(_) | TrySendError::Disconnected(_)) => {
                 self.known.remove(&id);

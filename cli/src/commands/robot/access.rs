@@ -5,6 +5,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use host_link::port::{ListedPort, TracedPort, serial_ports};
+use host_link::robot::{Callbacks, Halt};
 use host_link::session::SessionConfig;
 use host_link::{LinkError, Port as _, Robot};
 use link_protocol::{Flags, Joint, Telemetry};
@@ -14,6 +15,7 @@ use super::key::KeyFile;
 use super::port::{AnyPort, BAUD, Means, NotOpen, Opened, Pace, fresh, open};
 use super::port_owner::{Ask, HeldBy, Holder, Relayed};
 use crate::failure::{Failure, Outcome};
+use crate::interrupt::Interrupt;
 use crate::link_log::Recorder;
 use crate::output::aside;
 use crate::virtual_robot::EmulatedBoard;
@@ -160,7 +162,8 @@ impl Access {
             let port = traced(opened.port, recorder.as_ref(), &opened.name);
             // From here on the port is ours: others are told, also while the robot is being greeted.
             let holder = Holder::announce(&opened.name, command);
-            let robot = Robot::connect_with(port, means.session)?;
+            let callbacks = callbacks(&holder);
+            let robot = Robot::connect_observed(port, means.session, callbacks)?;
             let mut line = Line::new(opened.name, robot, holder, recorder)?;
             line.say_what_the_key_is_worth(self.key.is_named())?;
             return Ok(line);
@@ -168,6 +171,7 @@ impl Access {
         let (name, robot) = self.find(pace)?;
         let holder = Holder::announce(&name, command);
         let mut robot = robot.map_port(|port| traced(port, recorder.as_ref(), &name));
+        robot.call_back(callbacks(&holder));
         if recorder.is_some() {
             // The greeting belongs to the log: without it nobody can tell which session follows.
             robot.reconnect()?;
@@ -287,6 +291,23 @@ pub(super) fn greet(name: &str, means: &Means) -> Answer {
     greeted.map_err(|failure| failure.to_string())
 }
 
+/// Reports of a silent link on standard error, and stops that other processes request while the robot is waited for.
+fn callbacks(holder: &Holder) -> Callbacks {
+    let halts = holder.halts();
+    Callbacks {
+        halt: Some(Box::new(move || halts.take())),
+        ..report_silence()
+    }
+}
+
+/// Reports of a silent link on standard error.
+pub(super) fn report_silence() -> Callbacks {
+    Callbacks {
+        silence: Some(Box::new(|silence| aside(&format!("note: {silence}.")))),
+        halt: None,
+    }
+}
+
 fn traced(port: AnyPort, recorder: Option<&Recorder>, name: &str) -> AnyPort {
     let Some(recorder) = recorder else {
         return port;
@@ -338,6 +359,26 @@ impl Line {
         robot.servo(Joint::Back)?;
         robot.status()?;
         Ok(())
+    }
+
+    /// Ctrl-C stops the robot from now on, whatever request is waited for.
+    pub(super) fn stops_on(&mut self, interrupt: &Interrupt) {
+        let halts = self.holder.halts();
+        let (interrupt, mut acted) = (interrupt.clone(), false);
+        self.robot.halt_when(Box::new(move || {
+            let pressed =
+                interrupt.requested() && !std::mem::replace(&mut acted, interrupt.requested());
+            halts.take().or_else(|| pressed.then_some(Halt::Stop))
+        }));
+    }
+
+    /// Reports no silence any more: a screen that is drawn shows it itself.
+    pub(super) fn shows_silence(&mut self) {
+        let halts = self.holder.halts();
+        self.robot.call_back(Callbacks {
+            silence: None,
+            halt: Some(Box::new(move || halts.take())),
+        });
     }
 
     /// What the port is called.

@@ -1,15 +1,18 @@
-//! A robot's port lent to whoever talks to it from outside this program: bytes pass as they are, and this program has no session
-//! of its own, so that the lease is fed by nobody but the one who drives.
+//! Robot's port shared with a driver outside this program: bytes pass unchanged, and this program has no session
+//! of its own, so that nobody but the driver keeps the lease alive.
 //!
-//! Two things it does itself: a stop for those who may not drive (a session that says nothing but stop, until the robot has heard
-//! it), and to open the port again when its cable was pulled.
+//! Two things it does itself: a stop for those who may not drive (a session that sends nothing but stops, until the robot has
+//! acknowledged one), and to open the port again after its cable was pulled. Nothing here waits for a port that takes no bytes:
+//! frames go through a bounded queue that stops overtake.
 
 use std::io;
 use std::time::{Duration, Instant};
 
 use host_link::Port as _;
+use host_link::port::SendQueue;
+use host_link::robot::Halt;
 use host_link::session::{Event, Session, SessionConfig, Ticket};
-use link_protocol::{Decoder, Message, Request, StateName, Telemetry};
+use link_protocol::{Decoder, Message, StateName, Telemetry};
 
 use super::access::{A_MOMENT, reach_alone};
 use super::answers::{Done, state};
@@ -38,7 +41,8 @@ pub(crate) struct LentPort {
     /// `None` while the cable is pulled.
     port: Option<AnyPort>,
     holder: Holder,
-    /// Says stop until the robot has heard it.
+    outbound: SendQueue,
+    /// Repeats a stop until the robot has acknowledged it.
     stopping: Option<(Session, Ticket)>,
     heard: Decoder,
     told: Option<Telemetry>,
@@ -75,6 +79,7 @@ impl PortToLend {
         Ok(Some(LentPort {
             holder: Holder::announce(&name, command),
             name,
+            outbound: SendQueue::paced(bytes_per_second(&means)),
             means,
             port: Some(port),
             stopping: None,
@@ -98,7 +103,12 @@ impl LentPort {
 
     /// Bytes per second that the line carries.
     pub(crate) fn bytes_per_second(&self) -> f64 {
-        f64::from(self.means.baud) / 10.0
+        bytes_per_second(&self.means)
+    }
+
+    /// Every stop of this program's own was acknowledged, or there was none.
+    pub(crate) fn is_stopped(&self) -> bool {
+        self.stopping.is_none()
     }
 
     /// Waits for bytes of the robot, does what other programs ask, and sends a stop again that was not heard.
@@ -107,7 +117,11 @@ impl LentPort {
         let Some(port) = &mut self.port else {
             return self.look_again(timeout);
         };
-        let count = match port.read(buf, timeout) {
+        let count = match self
+            .outbound
+            .drive(port)
+            .and_then(|()| port.read(buf, timeout))
+        {
             Ok(count) => count,
             Err(error) => return self.gone(&error),
         };
@@ -119,14 +133,16 @@ impl LentPort {
         }
     }
 
-    /// Sends whole frames. What a port that is gone does not take is lost, as on any link.
+    /// Sends whole frames. A port that is too slow or gone loses them, as any link does; stops overtake all others.
     pub(crate) fn write(&mut self, frames: &[u8]) -> Option<Heard> {
-        let error = self.port.as_mut()?.write(frames).err()?;
+        let port = self.port.as_mut()?;
+        self.outbound.push(frames);
+        let error = self.outbound.drive(port).err()?;
         Some(self.gone(&error))
     }
 
-    /// Stops the robot, whoever drives it: at once, and again until it has heard.
-    pub(crate) fn stop(&mut self, estop: bool) {
+    /// Stops the robot, whoever drives it: at once, and again until it has acknowledged.
+    pub(crate) fn stop(&mut self, halt: Halt) {
         let Some(port) = &mut self.port else {
             return;
         };
@@ -140,8 +156,7 @@ impl LentPort {
             },
             |(session, _)| session,
         );
-        let request = if estop { Request::EStop } else { Request::Stop };
-        let ticket = session.request(port.now(), request);
+        let ticket = session.request(port.now(), halt.into());
         self.stopping = Some((session, ticket));
         if let Err(error) = self.drive_stop(&[]) {
             self.gone(&error);
@@ -186,14 +201,13 @@ impl LentPort {
         if ended {
             self.stopping = None;
         }
-        if frames.is_empty() {
-            return Ok(());
-        }
-        port.write(&frames)
+        self.outbound.push(&frames);
+        self.outbound.drive(port)
     }
 
     fn gone(&mut self, error: &io::Error) -> Heard {
         self.port = None;
+        self.outbound = SendQueue::paced(bytes_per_second(&self.means));
         self.stopping = None;
         self.told = None;
         self.heard = Decoder::new();
@@ -220,14 +234,14 @@ impl LentPort {
     /// What another `swimmer` asks of the robot: here it is a stop, or how it stands.
     fn serve_others(&mut self) {
         for (ask, asker) in self.holder.take_asked() {
+            if let Some(halt) = ask.halt() {
+                self.stop(halt);
+            }
             let answer = match ask {
-                Ask::Stop | Ask::EStop => {
-                    self.stop(ask == Ask::EStop);
-                    Relayed::of(&Done {
-                        state: "stopping",
-                        sentence: "Stopping: the lab page's server passed it on.".to_owned(),
-                    })
-                }
+                Ask::Stop | Ask::EStop => Relayed::of(&Done {
+                    state: "stopping",
+                    sentence: "Stopping: the lab page's server passed it on.".to_owned(),
+                }),
                 Ask::Status if self.state().is_some() => Relayed::of(&Done {
                     state: self.state().map_or("stopping", state),
                     sentence: "As the robot told last.".to_owned(),
@@ -240,4 +254,8 @@ impl LentPort {
             asker.answer(&answer);
         }
     }
+}
+
+fn bytes_per_second(means: &Means) -> f64 {
+    f64::from(means.baud) / 10.0
 }

@@ -79,6 +79,7 @@ impl fmt::Display for Played {
 pub(super) fn arm(access: &Access, arm: &Arm, output: Output) -> Outcome {
     let interrupt = Interrupt::install_with_a_robot()?;
     let mut line = access.connect("swimmer robot arm", Pace::RealTime)?;
+    line.stops_on(&interrupt);
     output.line(MAY_JUMP);
     line.robot.arm(arm.clear_estop)?;
     output.line("Armed: the servos hold their pose. Ctrl-C stops.");
@@ -92,6 +93,7 @@ pub(super) fn play(access: &Access, play: &Play, output: Output) -> Outcome {
     let interrupt = Interrupt::install_with_a_robot()?;
     if play.attach {
         let mut line = access.connect("swimmer robot play --attach", Pace::RealTime)?;
+        line.stops_on(&interrupt);
         attach(&mut line, &interrupt, output)?;
         return line.close();
     }
@@ -116,6 +118,7 @@ pub(super) fn play(access: &Access, play: &Play, output: Output) -> Outcome {
         .map(|gait| BeforePlay::new(gait, &play.owner))
         .transpose()?;
     let mut line = access.connect("swimmer robot play", pace)?;
+    line.stops_on(&interrupt);
     let status = line.robot.status()?;
     nothing_under_way(&status)?;
     let mut checked = status.held();
@@ -203,6 +206,7 @@ pub(super) fn pause(access: &Access, pause: &Pause, output: Output) -> Outcome {
             return Ok(());
         }
     };
+    line.stops_on(&interrupt);
     line.robot.pause(pause.detach)?;
     if pause.detach {
         output.answer(&Done {
@@ -227,6 +231,7 @@ pub(super) fn resume(access: &Access, output: Output) -> Outcome {
             return Ok(());
         }
     };
+    line.stops_on(&interrupt);
     line.robot.resume()?;
     wait(&mut line, &interrupt, output)?;
     line.close()

@@ -88,6 +88,7 @@ pub(super) fn play(
     let file = owner.map(load_swimmer).transpose()?;
     let tables = tables(&playlist, path)?;
     let mut line = access.connect("swimmer robot play", Pace::AsFastAsPossible)?;
+    line.stops_on(interrupt);
     let status = line.robot.status()?;
     nothing_under_way(&status)?;
     let settings_crc32 = status.settings_crc32;

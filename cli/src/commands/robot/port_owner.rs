@@ -17,6 +17,7 @@
 //! port's lock binds only who looks at it, so that the stop is written beside the holder; where that cannot be (TCP), the
 //! holder is ended ([`take_over`]).
 
+mod halt_signal;
 #[cfg(unix)]
 mod held_by;
 #[cfg(unix)]

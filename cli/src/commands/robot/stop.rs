@@ -5,11 +5,11 @@ use std::io::{self, BufRead as _, IsTerminal as _};
 use std::thread::sleep;
 use std::time::Instant;
 
-use host_link::robot::StoppedBy;
+use host_link::robot::{Halt, StoppedBy};
 use host_link::{LinkError, Robot};
 use link_protocol::StateName;
 
-use super::access::{Access, LOOK_AGAIN, Reached};
+use super::access::{Access, LOOK_AGAIN, Reached, report_silence};
 use super::answers::{Done, E_STOPPED, STOPPED, state};
 use super::port::{AnyPort, Pace, session_seed};
 use super::port_owner::{Ask, HeldBy, Relayed, Unanswered};
@@ -119,9 +119,14 @@ fn stop_at_once(
     port: AnyPort,
     estop: bool,
 ) -> Outcome<Result<Robot<AnyPort>, LinkError>> {
-    let (port, by) = Robot::stop_at_once(port, session_seed(), estop)?;
+    let halt = if estop { Halt::EStop } else { Halt::Stop };
+    let (port, by) = Robot::stop_at_once(port, session_seed(), halt, report_silence())?;
     say_if_by_itself(by);
-    Ok(Robot::connect_with(port, access.session()?))
+    Ok(Robot::connect_observed(
+        port,
+        access.session()?,
+        report_silence(),
+    ))
 }
 
 /// Where the stop waits behind other bytes, the robot may have been quicker.

@@ -10,6 +10,8 @@ use std::str::FromStr;
 use std::time::Duration;
 
 use crossterm::event::{self, Event};
+use host_link::Port as _;
+use host_link::robot::SILENCE_REPORTED;
 use link_protocol::{ANGLE_UNIT_RAD, Joint, StateName};
 use ratatui::DefaultTerminal;
 
@@ -83,6 +85,7 @@ fn trims(line: &mut Line) -> Outcome<[i16; 2]> {
 fn nudge(access: &Access, output: Output) -> Outcome {
     let interrupt = Interrupt::install_with_a_robot()?;
     let mut line = access.connect("swimmer robot trim", Pace::RealTime)?;
+    line.shows_silence();
     let before = trims(&mut line)?;
     let mut nudging = Nudging::new(before.map(degrees));
     let mut terminal = ratatui::try_init().map_err(no_terminal)?;
@@ -120,9 +123,15 @@ fn bench(
     nudging: &mut Nudging,
     interrupt: &Interrupt,
 ) -> Outcome<Wish> {
+    let mut heard = line.robot.port().now();
     loop {
-        if let Some(telemetry) = line.beat()? {
+        let news = line.beat()?;
+        let now = line.robot.port().now();
+        if let Some(telemetry) = news {
+            heard = now;
             nudging.state = Some(telemetry.state);
+        } else if now.saturating_sub(heard) >= SILENCE_REPORTED {
+            nudging.state = None;
         }
         if interrupt.requested() {
             return Ok(Wish::Leave);

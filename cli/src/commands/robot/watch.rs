@@ -40,6 +40,7 @@ pub(super) fn watch(access: &Access, arguments: &Watch, output: Output) -> Outco
         }
         return source.close();
     }
+    source.shows_silence();
     let dashboard = prepare(&mut source)?;
     let left = screen(&mut source, dashboard, end, &interrupt)?;
     output.line(left);

@@ -14,6 +14,7 @@ use host_link::Robot;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
 use super::super::port::AnyPort;
+use super::halt_signal::HaltSignal;
 use super::relay::{Ask, Relayed};
 use super::socket::{HEARD, folder, is_held, note, socket_name};
 
@@ -29,6 +30,7 @@ const LISTEN: Timespec = Timespec {
 pub(in super::super) struct Holder {
     open: Option<Open>,
     asked: Vec<(Ask, Asker)>,
+    halts: HaltSignal,
 }
 
 /// Another process, which waits for an answer.
@@ -58,13 +60,20 @@ impl Holder {
     }
 
     pub(super) fn announce_in(folder: Option<&Path>, port: &str, command: &str) -> Self {
+        let halts = HaltSignal::default();
         let open = folder
             .zip(socket_name(port))
-            .and_then(|(folder, name)| Open::new(folder.join(name), command).ok());
+            .and_then(|(folder, name)| Open::new(folder.join(name), command, halts.clone()).ok());
         Self {
             open,
             asked: Vec::new(),
+            halts,
         }
+    }
+
+    /// Stops that other processes have requested, for a caller that waits for the robot and serves nobody meanwhile.
+    pub(in super::super) fn halts(&self) -> HaltSignal {
+        self.halts.clone()
     }
 
     /// Whether somebody waits for something.
@@ -79,6 +88,9 @@ impl Holder {
     pub(in super::super) fn take_asked(&mut self) -> Vec<(Ask, Asker)> {
         self.asked();
         self.asked.sort_by_key(|(ask, _)| *ask as u8);
+        if self.asked.iter().any(|(ask, _)| ask.halt().is_some()) {
+            self.halts.take();
+        }
         std::mem::take(&mut self.asked)
     }
 
@@ -92,7 +104,7 @@ impl Holder {
 
 impl Open {
     /// Listens at `path` from now on, in a thread: who asks hears at once that this process lives, whatever else it is at.
-    fn new(path: PathBuf, command: &str) -> io::Result<Self> {
+    fn new(path: PathBuf, command: &str, halts: HaltSignal) -> io::Result<Self> {
         let listener = listen(&path, command)?;
         let (hears, heard) = mpsc::channel();
         let ended = Arc::new(AtomicBool::new(false));
@@ -102,6 +114,9 @@ impl Open {
                 let _ = poll(&mut [PollFd::new(&listener, PollFlags::IN)], Some(&LISTEN));
                 while let Ok((stream, _)) = listener.accept() {
                     if let Some(ask) = hear(&stream) {
+                        if let Some(halt) = ask.halt() {
+                            halts.set(halt);
+                        }
                         // The holder may be leaving; then the stream is closed, and who asked looks again.
                         let _ = hears.send((ask, Asker(stream)));
                     }

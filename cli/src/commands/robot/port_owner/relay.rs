@@ -3,6 +3,7 @@
 use std::fmt;
 
 use clap::ValueEnum;
+use host_link::robot::Halt;
 use host_link::session::{ClockFit, LinkCounters};
 use host_link::{LinkError, Robot};
 use link_protocol::{Board, Configuration, Status, Telemetry};
@@ -81,6 +82,15 @@ impl News {
 }
 
 impl Ask {
+    /// The stop that this asks for; `None` if it asks for something else.
+    pub(in super::super) fn halt(self) -> Option<Halt> {
+        match self {
+            Self::Stop => Some(Halt::Stop),
+            Self::EStop => Some(Halt::EStop),
+            _ => None,
+        }
+    }
+
     /// Does it; the robot's word comes back.
     pub(super) fn of(self, robot: &mut Robot<AnyPort>) -> Relayed {
         let done = |robot: &mut Robot<AnyPort>, sentence: &str| {

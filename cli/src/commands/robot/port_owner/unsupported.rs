@@ -6,6 +6,7 @@ use host_link::Robot;
 use host_link::testing::MockPort;
 
 use super::super::port::AnyPort;
+use super::halt_signal::HaltSignal;
 use super::relay::{Ask, Relayed, Unanswered};
 use crate::failure::Outcome;
 
@@ -16,6 +17,11 @@ impl Holder {
     /// Tells nobody.
     pub(in super::super) fn announce(_port: &str, _command: &str) -> Self {
         Self
+    }
+
+    /// Never set.
+    pub(in super::super) fn halts(&self) -> HaltSignal {
+        HaltSignal::default()
     }
 
     /// Nobody asks.

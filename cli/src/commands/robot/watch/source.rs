@@ -3,6 +3,7 @@
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+use host_link::robot::{SILENCE_REPORTED, Silence};
 use host_link::session::{ClockFit, LinkCounters};
 use host_link::{LinkError, Port as _};
 use link_protocol::Telemetry;
@@ -13,7 +14,7 @@ use super::super::port::Pace;
 use super::super::port_owner::{Ask, Introduction, News};
 use super::super::status;
 use crate::failure::Outcome;
-use crate::output::Output;
+use crate::output::{Output, aside};
 
 const COMMAND: &str = "swimmer robot watch";
 /// Time between two questions to the process that has the port.
@@ -33,6 +34,11 @@ pub(super) struct Beside<'a> {
     begun: Instant,
     /// The robot's clock at the telemetry seen last, µs.
     seen_us: Option<u64>,
+    heard: Instant,
+    /// A screen shows how long nothing was heard.
+    shows_silence: bool,
+    /// Nothing more is to be said of the present silence.
+    silence_reported: bool,
 }
 
 /// What came of listening for a moment.
@@ -65,6 +71,9 @@ impl<'a> Source<'a> {
                 news: News::default(),
                 begun: Instant::now(),
                 seen_us: None,
+                heard: Instant::now(),
+                shows_silence: false,
+                silence_reported: false,
             })),
         })
     }
@@ -108,6 +117,16 @@ impl<'a> Source<'a> {
             Self::Own(line) => line.robot.reconnect().is_ok(),
             // Its matter, not ours.
             Self::Holder(_) => false,
+        }
+    }
+
+    /// Reports no silence: a screen shows it.
+    pub(super) fn shows_silence(&mut self) {
+        match self {
+            Self::Own(line) => line.shows_silence(),
+            Self::Holder(beside) => {
+                (beside.shows_silence, beside.silence_reported) = (true, true);
+            }
         }
     }
 
@@ -187,12 +206,18 @@ impl Beside<'_> {
             .news
             .telemetry
             .filter(|telemetry| self.seen_us.is_none_or(|seen| telemetry.robot_us > seen));
-        Ok(match news {
-            Some(telemetry) => {
-                self.seen_us = Some(telemetry.robot_us);
-                Beat::Telemetry(telemetry)
-            }
-            None => Beat::Nothing,
-        })
+        if let Some(telemetry) = news {
+            self.seen_us = Some(telemetry.robot_us);
+            self.heard = Instant::now();
+            self.silence_reported = self.shows_silence;
+            return Ok(Beat::Telemetry(telemetry));
+        }
+        let silent = self.heard.elapsed();
+        if silent >= SILENCE_REPORTED && !self.silence_reported {
+            self.silence_reported = true;
+            let doing = "watching through the program that has the port";
+            aside(&format!("note: {}.", Silence::Began { doing, silent }));
+        }
+        Ok(Beat::Nothing)
     }
 }
