@@ -87,46 +87,51 @@ struct Operator<'a> {
 }
 
 impl Operator<'_> {
-    /// The answer to a line that is a question.
+    /// Answers what was printed since the last answer, if it is a question.
     fn answer(&mut self, line: &str) -> Option<String> {
         if line.contains(self.leaves_at) {
             return Some("q".to_owned());
         }
-        let joint = usize::from(line.starts_with("back"));
-        let answer = if line.ends_with("[Enter]") || line.contains("Enter takes it") {
-            String::new()
-        } else if line.starts_with("Which one turned?") {
-            let turned = [0, 1].map(|joint| self.swept(joint) > SEEN_DEG);
-            match turned {
-                [true, false] => "front",
-                [false, true] => "back",
-                [true, true] => "both",
-                [false, false] => "none",
-            }
-            .to_owned()
-        } else if line.ends_with("which angle does the joint show?") {
-            let seen = self.twin.seen();
-            format!("{:.0}", seen.last().unwrap()[joint] + 0.0)
-        } else if line.contains("how far may the joint turn") {
-            self.ends.to_owned()
-        } else if line.starts_with("Are both links straight") {
-            let straight = self
-                .twin
-                .seen()
-                .last()
-                .unwrap()
-                .iter()
-                .all(|angle| angle.abs() < 9.0);
-            if straight { "y" } else { "n" }.to_owned()
-        } else if line.starts_with("Swing each joint") {
-            "y".to_owned()
-        } else if line.contains("did it turn all the way") {
-            // Its dead band short of 60° to either side, and there and back.
-            let all = self.swept(joint) > 100.0 && self.leftwards_first(joint);
-            if all { "y" } else { "n" }.to_owned()
-        } else {
-            return None;
+        let last = |name: &str| {
+            line.rfind(&format!("{name}:"))
+                .max(line.rfind(&format!("{name},")))
         };
+        let joint = usize::from(last("back") > last("front"));
+        let answer =
+            if line.ends_with("[Enter or y: go on; n: leave]") || line.contains("Enter takes it") {
+                String::new()
+            } else if line.contains("Which one turned?") {
+                let turned = [0, 1].map(|joint| self.swept(joint) > SEEN_DEG);
+                match turned {
+                    [true, false] => "front",
+                    [false, true] => "back",
+                    [true, true] => "both",
+                    [false, false] => "none",
+                }
+                .to_owned()
+            } else if line.ends_with("which angle does the joint show?") {
+                let seen = self.twin.seen();
+                format!("{:.0}", seen.last().unwrap()[joint] + 0.0)
+            } else if line.contains("how far may the joint turn") {
+                self.ends.to_owned()
+            } else if line.contains("Are both links straight") {
+                let straight = self
+                    .twin
+                    .seen()
+                    .last()
+                    .unwrap()
+                    .iter()
+                    .all(|angle| angle.abs() < 9.0);
+                if straight { "y" } else { "n" }.to_owned()
+            } else if line.contains("Swing each joint") {
+                "y".to_owned()
+            } else if line.contains("did it turn all the way") {
+                // Its dead band short of 60° to either side, and there and back.
+                let all = self.swept(joint) > 100.0 && self.leftwards_first(joint);
+                if all { "y" } else { "n" }.to_owned()
+            } else {
+                return None;
+            };
         self.looked = self.twin.seen.lock().unwrap().len();
         Some(answer)
     }
@@ -166,13 +171,16 @@ fn set_up(folder: &Path, twin: &Twin, more: &[&str], ends: &str, leaves_at: &str
         ends,
         leaves_at,
     };
-    let mut said = String::new();
+    let (mut said, mut question) = (String::new(), String::new());
     for line in BufReader::new(setup.stdout.take().unwrap()).lines() {
         let line = line.unwrap();
         said.push_str(&line);
         said.push('\n');
-        if let Some(answer) = operator.answer(&line) {
+        // A question may take several lines.
+        question = format!("{question} {line}");
+        if let Some(answer) = operator.answer(&question) {
             writeln!(operator.answers, "{answer}").unwrap();
+            question.clear();
         }
     }
     (said, setup.wait_with_output().unwrap().into())

@@ -1,8 +1,8 @@
-//! `swimmer robot setup`: a first morning with two servos, question by question. Horns off, arm, which servo is which, which
-//! way it turns, where it is straight, its dead band and end stops; then everything is saved on the robot and written down.
+//! `swimmer robot setup`: guided set-up of two new servos. Horns off, arm, which servo is which, its sign, centre, dead band and
+//! end stops; then everything is stored on the robot and written to a swimmer file.
 //!
 //! The joints are moved by trims, which the robot ramps like anything else, so that nothing but the last, optional, swing
-//! needs a gait. Whoever leaves before the end finds the robot stopped and as it was.
+//! needs a gait. Leaving before the end stops the robot and restores its settings.
 
 mod answer;
 mod export;
@@ -11,6 +11,8 @@ mod operator;
 mod readings;
 mod save;
 mod swing;
+#[cfg(test)]
+mod tests;
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -21,7 +23,7 @@ use swimmer_files::SwimmerFile;
 
 use self::answer::Done;
 use self::measured::{Measured, end_stops, told};
-use self::operator::{Operator, degrees};
+use self::operator::{Operator, degrees, takes_it};
 use self::readings::Readings;
 use super::access::{Access, Line};
 use super::answers::state;
@@ -65,6 +67,7 @@ pub(super) fn run(access: &Access, arguments: &Setup, output: Output) -> Outcome
     let interrupt = Interrupt::install_with_a_robot()?;
     let operator = Operator::new(interrupt.clone(), output);
     let mut line = access.connect("swimmer robot setup", Pace::RealTime)?;
+    line.stops_on(&interrupt);
     let status = line.robot.status()?;
     if status.state != StateName::Stopped {
         return Err(Failure::Tried(format!(
@@ -93,25 +96,25 @@ pub(super) fn run(access: &Access, arguments: &Setup, output: Output) -> Outcome
     line.close()
 }
 
-/// The robot, and who stands before it.
+/// Robot and operator during a set-up.
 struct Bench<'a> {
     line: &'a mut Line,
     operator: &'a Operator,
     interrupt: &'a Interrupt,
-    /// The maps as they were found: what a setup that is left puts back.
+    /// Servo maps before the set-up; restored if it is left early.
     before: [ServoSettings; 2],
 }
 
 impl Bench<'_> {
     fn everything(&mut self, arguments: &Setup, named: Option<SwimmerFile>) -> Outcome<Done> {
         self.operator.tell(
-            "Setting up both servos. A question ends with Enter; q leaves, and Ctrl-C too: the robot is stopped then and as it was.\n\
+            "Setting up both servos. Each answer ends with Enter; q or Ctrl-C leaves: then the robot is stopped and as it was.\n\
              1. Which servo is which",
         );
         self.operator.confirm(
             self.line,
             false,
-            "Take the horns off both servos, or the links off their horns. Is nothing left that a turning servo could hit?",
+            "Take the horns off both servos, or the links off their horns, so that a turning servo hits nothing. Are they off?",
         )?;
         self.power()?;
         for joint in JOINTS {
@@ -121,7 +124,7 @@ impl Bench<'_> {
         self.operator.confirm(
             self.line,
             true,
-            "Both servos stand at their centres now. Put the horns on so that the links are as straight as the teeth allow (a few degrees off are found below), and screw them on.",
+            "Both servos stand at their centres now. Put the horns on so that the links are as straight as the teeth allow (a few degrees off are found below), and screw them on. Are both on?",
         )?;
         self.operator.tell(
             "3. Angles\n\
@@ -138,7 +141,7 @@ impl Bench<'_> {
         self.written(arguments, file, [front, back])
     }
 
-    /// Pulses on, with no trim in the way.
+    /// Turns the pulses on, with both trims at zero.
     fn power(&mut self) -> Outcome {
         for joint in JOINTS {
             self.line.robot.trim(joint, 0.0)?;
@@ -148,7 +151,7 @@ impl Bench<'_> {
         self.operator.wait(self.line, true, TO_TURN)
     }
 
-    /// Pulses off.
+    /// Turns the pulses off.
     fn rest(&mut self) -> Outcome {
         self.line.robot.stop()?;
         wait_for_rest(&mut self.line.robot)?;
@@ -161,14 +164,14 @@ impl Bench<'_> {
         self.operator.wait(self.line, true, TO_TURN)
     }
 
-    /// The servo that turns is the one that is meant: else the plugs are changed over.
+    /// Checks that the commanded servo is the one that turns; otherwise has the plugs exchanged.
     fn which_is(&mut self, joint: Joint) -> Outcome {
         let name = name_of(joint);
         loop {
             self.operator.confirm(
                 self.line,
                 true,
-                &format!("The {name} servo turns by 25° and back. Watch both."),
+                &format!("The {name} servo turns by 25° and back. Watch both. Ready?"),
             )?;
             self.turn(joint, SWING)?;
             self.turn(joint, 0.0)?;
@@ -199,13 +202,13 @@ impl Bench<'_> {
             self.operator.confirm(
                 self.line,
                 false,
-                &format!("The pulses are off: {remedy}. Done?"),
+                &format!("The pulses are off: {remedy}. Is that done?"),
             )?;
             self.power()?;
         }
     }
 
-    /// Four readings, the dead band and the end stops of one joint.
+    /// Measures one joint: four readings, its dead band and its end stops.
     fn measure(&mut self, joint: Joint) -> Outcome<Measured> {
         let name = name_of(joint);
         let before = ServoSettings {
@@ -239,7 +242,7 @@ impl Bench<'_> {
             true,
             &format!("{name}: dead band ±{measured}. Enter takes it; or type another half width, in degrees"),
             |answer| match answer {
-                "" => Ok(found.dead_band),
+                answer if takes_it(answer) => Ok(found.dead_band),
                 text => degrees(text).and_then(|angle| {
                     (angle >= 0.0)
                         .then_some(angle)
@@ -264,7 +267,7 @@ impl Bench<'_> {
         })
     }
 
-    /// The robot at rest and as it was, as far as the link allows.
+    /// Stops the robot and restores its settings, as far as the link allows.
     fn leave(&mut self) {
         let left = self.put_back();
         let told = match left {

@@ -1,13 +1,13 @@
-//! What is known of a joint at the end of its questions, and what that is in pulses and in words.
+//! Result of the questions about one joint, in pulses and in words.
 
 use gait_player::servo::ServoMap;
 use link_protocol::{PulseRange, RobotLimits, ServoSettings};
 
-use super::operator::degrees;
+use super::operator::{degrees, takes_it};
 use super::readings::Found;
 use crate::quantity;
 
-/// What is known of a joint at the end of its questions.
+/// Result of the questions about one joint.
 pub(super) struct Measured {
     pub(super) settings: ServoSettings,
     pub(super) dead_band: f64,
@@ -37,7 +37,7 @@ pub(super) fn full_range(limits: &RobotLimits) -> PulseRange {
     }
 }
 
-/// What the readings said.
+/// Describes what the readings show.
 pub(super) fn told(name: &str, found: &Found, settings: &ServoSettings) -> String {
     let mut parts = vec![
         if found.mirrored {
@@ -62,9 +62,9 @@ pub(super) fn told(name: &str, found: &Found, settings: &ServoSettings) -> Strin
     format!("The {name} joint {}.", parts.join("; it "))
 }
 
-/// Two angles in degrees to the left and to the right; right is negative.
+/// Parses two angles in degrees, to the left and to the right; the right end is negative.
 pub(super) fn end_stops(answer: &str, most: f64) -> Result<[f64; 2], String> {
-    if answer.is_empty() {
+    if takes_it(answer) {
         return Ok([-most, most]);
     }
     let advice = || {

@@ -1,5 +1,7 @@
-//! Questions to whoever stands at the bench: a line out, a line in, and the link kept while nobody answers. The answers may
-//! come from a script.
+//! Dialogue with the operator at the bench: a question out, a line in, the link kept alive meanwhile. A script may give the
+//! answers.
+//!
+//! Nothing moves on an answer that is not understood: a confirmation takes Enter or y alone, and asks again on anything else.
 
 use std::io::{self, BufRead as _, IsTerminal as _};
 use std::str::FromStr;
@@ -7,28 +9,33 @@ use std::sync::mpsc;
 use std::thread;
 use std::time::Duration;
 
+use crossterm::terminal;
 use host_link::robot::await_play::at_rest;
 use host_link::session::cause_in_words;
+use textwrap::WordSplitter;
 
 use super::super::access::{BEAT, Line};
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
 use crate::output::Output;
 
-/// Someone who looks at the robot and answers.
+/// Longest line of text, in columns.
+const WIDEST: usize = 80;
+
+/// Operator at the bench, who watches the robot and answers questions.
 pub(super) struct Operator {
     answers: mpsc::Receiver<String>,
     interrupt: Interrupt,
     output: Output,
-    /// A script's answers are shown, as a terminal shows what is typed.
-    echoes: bool,
+    /// The answers come from a script: they are printed, as a terminal shows typed ones.
+    scripted: bool,
 }
 
 impl Operator {
-    /// Listens to the standard input.
+    /// Reads answers from the standard input.
     pub(super) fn new(interrupt: Interrupt, output: Output) -> Self {
         let (sender, answers) = mpsc::channel();
-        // It reads until the program ends; nobody can be made to answer.
+        // Reads until the program ends: a blocking read cannot be cancelled.
         thread::spawn(move || {
             for line in io::stdin().lock().lines().map_while(Result::ok) {
                 if sender.send(line).is_err() {
@@ -40,19 +47,34 @@ impl Operator {
             answers,
             interrupt,
             output,
-            echoes: !io::stdin().is_terminal(),
+            scripted: !io::stdin().is_terminal(),
         }
     }
 
-    /// Says something.
-    pub(super) fn tell(&self, text: &str) {
-        self.output.line(text);
+    /// Gives these answers, one after the other, and then none.
+    #[cfg(test)]
+    pub(super) fn with_script(answers: &[&str], output: Output) -> Self {
+        let (sender, receiver) = mpsc::channel();
+        for answer in answers {
+            sender.send((*answer).to_owned()).unwrap();
+        }
+        Self {
+            answers: receiver,
+            interrupt: Interrupt::default(),
+            output,
+            scripted: true,
+        }
     }
 
-    /// Asks until the answer makes sense. `armed`: the servos have power, and are to keep it.
+    /// Prints a text, wrapped at words.
+    pub(super) fn tell(&self, text: &str) {
+        self.output.line(&wrapped(text, width()));
+    }
+
+    /// Repeats a question until `read` accepts the answer. `armed`: the servos have power, and must keep it.
     ///
     /// # Errors
-    /// [`Failure::Tried`] where the operator leaves, the answers end or the robot stops by itself.
+    /// [`Failure::Tried`] if the operator leaves, the answers end or the robot stops by itself.
     pub(super) fn ask<T>(
         &self,
         line: &mut Line,
@@ -60,10 +82,14 @@ impl Operator {
         question: &str,
         read: impl Fn(&str) -> Result<T, String>,
     ) -> Outcome<T> {
+        if !self.scripted {
+            // Lines typed before the question was printed do not answer it.
+            while self.answers.try_recv().is_ok() {}
+        }
         self.tell(question);
         loop {
             let answer = self.answer(line, armed, question)?;
-            if self.echoes {
+            if self.scripted {
                 self.tell(&format!("> {answer}"));
             }
             if matches!(answer.as_str(), "q" | "quit") {
@@ -76,15 +102,22 @@ impl Operator {
         }
     }
 
-    /// Waits for Enter.
+    /// Goes on only after Enter or y. `question` is answered by yes if it is safe to go on.
     ///
     /// # Errors
-    /// As [`ask`](Self::ask).
-    pub(super) fn confirm(&self, line: &mut Line, armed: bool, text: &str) -> Outcome {
-        self.ask(line, armed, &format!("{text} [Enter]"), |_| Ok(()))
+    /// As [`ask`](Self::ask); [`Failure::Tried`] after n.
+    pub(super) fn confirm(&self, line: &mut Line, armed: bool, question: &str) -> Outcome {
+        let asked = format!("{question} [Enter or y: go on; n: leave]");
+        let advice = "Nothing moves before Enter or y; n leaves the setup.";
+        if self.ask(line, armed, &asked, |answer| {
+            yes_or_no(answer, true, advice)
+        })? {
+            return Ok(());
+        }
+        Err(Failure::Tried(format!("left the setup at `{question}`")))
     }
 
-    /// A question with two answers; an empty one is `standard`.
+    /// Asks a question with two answers; an empty answer is `standard`.
     ///
     /// # Errors
     /// As [`ask`](Self::ask).
@@ -96,20 +129,12 @@ impl Operator {
         standard: bool,
     ) -> Outcome<bool> {
         let choice = if standard { "[Y/n]" } else { "[y/N]" };
-        self.ask(
-            line,
-            armed,
-            &format!("{question} {choice}"),
-            |answer| match answer.to_lowercase().as_str() {
-                "" => Ok(standard),
-                "y" | "yes" => Ok(true),
-                "n" | "no" => Ok(false),
-                _ => Err("Answer y or n.".to_owned()),
-            },
-        )
+        self.ask(line, armed, &format!("{question} {choice}"), |answer| {
+            yes_or_no(answer, standard, "Answer y or n.")
+        })
     }
 
-    /// Lets time pass with the link kept.
+    /// Waits with the link kept alive.
     ///
     /// # Errors
     /// As [`ask`](Self::ask).
@@ -152,7 +177,40 @@ impl Operator {
     }
 }
 
-/// An angle in degrees, with or without its unit; in radians.
+/// Columns of the terminal, at most [`WIDEST`].
+fn width() -> usize {
+    let columns = io::stdout()
+        .is_terminal()
+        .then(|| terminal::size().ok())
+        .flatten()
+        .map(|(columns, _)| usize::from(columns));
+    columns.unwrap_or(WIDEST).clamp(20, WIDEST)
+}
+
+/// Breaks lines between words.
+fn wrapped(text: &str, width: usize) -> String {
+    let options = textwrap::Options::new(width)
+        .word_splitter(WordSplitter::NoHyphenation)
+        .break_words(false);
+    textwrap::fill(text, options)
+}
+
+/// Returns `true` for y, `false` for n, and `standard` for an empty answer.
+fn yes_or_no(answer: &str, standard: bool, advice: &str) -> Result<bool, String> {
+    match answer.to_lowercase().as_str() {
+        "" => Ok(standard),
+        "n" | "no" => Ok(false),
+        _ if takes_it(answer) => Ok(true),
+        _ => Err(advice.to_owned()),
+    }
+}
+
+/// Accepts the value that a question offers: Enter or y.
+pub(super) fn takes_it(answer: &str) -> bool {
+    matches!(answer.to_lowercase().as_str(), "" | "y" | "yes")
+}
+
+/// Parses an angle in degrees, with or without its unit, into radians.
 pub(super) fn degrees(text: &str) -> Result<f64, String> {
     let number = text.trim_end_matches("deg").trim_end_matches('°').trim();
     f64::from_str(number)
@@ -165,6 +223,24 @@ pub(super) fn degrees(text: &str) -> Result<f64, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn lines_break_between_words() {
+        let text = "Put the horns on both servos.\nUse `--pulse-range`, 1400-1600.";
+        for width in [20, 27, 80] {
+            let wrapped = wrapped(text, width);
+            assert!(
+                wrapped.lines().all(|line| line.chars().count() <= width),
+                "{wrapped}"
+            );
+            let words = |text: &str| {
+                text.split_whitespace()
+                    .map(str::to_owned)
+                    .collect::<Vec<_>>()
+            };
+            assert_eq!(words(&wrapped), words(text));
+        }
+    }
 
     #[test]
     fn angles_at_the_bench_are_degrees() {

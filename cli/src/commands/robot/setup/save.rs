@@ -10,6 +10,7 @@ use super::super::preflight::configured;
 use super::super::servo::{self, Set};
 use super::answer::{Done, Servo};
 use super::measured::{Measured, full_range};
+use super::operator::takes_it;
 use super::{Bench, JOINTS, Setup, export};
 use crate::failure::{Failure, Outcome};
 use crate::quantity;
@@ -39,7 +40,7 @@ impl Bench<'_> {
         };
         self.operator
             .ask(self.line, false, &question, |answer| match answer {
-                "" => Ok(standard.clone()),
+                answer if takes_it(answer) => Ok(standard.clone()),
                 path => SwimmerFile::find(path).map_err(|error| error.to_string()),
             })
     }
@@ -120,13 +121,8 @@ impl Bench<'_> {
             None => self.operator.ask(
                 self.line,
                 false,
-                "Write a swimmer file with these servos? Its name; Enter: none",
-                |answer| match answer {
-                    "" => Ok(None),
-                    name => export::may_be_written(Path::new(name), None)
-                        .map(|()| Some(PathBuf::from(name)))
-                        .map_err(|failure| failure.to_string()),
-                },
+                "Write a swimmer file with these servos? Type its name, as ours.toml; Enter or n: none",
+                file_name,
             )?,
         };
         if let Some(place) = &place {
@@ -149,5 +145,18 @@ impl Bench<'_> {
             max_angle_rad: servo.max_angle,
             file: place.map(|place| place.display().to_string()),
         })
+    }
+}
+
+/// Parses the name of a swimmer file to write; `None` if there shall be no file.
+fn file_name(answer: &str) -> Result<Option<PathBuf>, String> {
+    match answer {
+        "" | "n" | "no" => Ok(None),
+        name if Path::new(name).extension().is_some_and(|end| end == "toml") => {
+            export::may_be_written(Path::new(name), None)
+                .map(|()| Some(PathBuf::from(name)))
+                .map_err(|failure| failure.to_string())
+        }
+        _ => Err("Type a name that ends in .toml, or Enter for no file.".to_owned()),
     }
 }

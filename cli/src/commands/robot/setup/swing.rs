@@ -1,4 +1,4 @@
-//! One joint, once, slowly, to both its ends: to see that nothing touches.
+//! Check of the end stops: turns one joint once, slowly, to both ends.
 
 use std::ops::ControlFlow;
 use std::time::Duration;
@@ -40,7 +40,7 @@ impl Bench<'_> {
             self.line,
             true,
             &format!(
-                "{name}: to {} and to {} within {seconds:.0} s. Ctrl-C stops it where it touches.",
+                "{name}: to {} and to {} within {seconds:.0} s. Ctrl-C stops it where it touches. Is the way free?",
                 quantity::angle(left),
                 quantity::angle(right)
             ),
@@ -62,7 +62,7 @@ impl Bench<'_> {
         if !self.operator.yes(
             self.line,
             false,
-            &format!("{name}: did it turn all the way, and nothing touched?"),
+            &format!("{name}: did it turn all the way without touching anything?"),
             true,
         )? {
             return Err(Failure::Tried(format!(
