@@ -15,8 +15,8 @@ use std::time::Duration;
 
 use link_protocol::{Decoder, Message};
 
+use super::FrameCutter;
 use super::Port;
-use super::frames::FrameCutter;
 
 /// Most bytes that wait; further frames are dropped.
 const MOST_WAITING: usize = 8192;

@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use link_protocol::Direction;
 
+use super::FrameCutter;
 use super::Port;
-use super::frames::FrameCutter;
 
 /// One frame that passed a [`TracedPort`] at the host's end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
