@@ -57,6 +57,7 @@ mod decoder;
 mod frame;
 mod hello;
 mod message;
+mod redact;
 mod refusal;
 mod reply;
 mod request;
@@ -74,6 +75,7 @@ pub use hello::{
     Board, FirmwareVersion, Hello, HelloReply, HelloReplyStart, ResetReason, RobotLimits,
 };
 pub use message::{BodyError, Message};
+pub use redact::redact_keys;
 pub use refusal::{CrossingPlace, Refusal};
 pub use reply::{BenchStatus, Counters, Reply, Status, TableInfo};
 pub use request::{Begin, Checked, Chunk, Follow, Play, Request};

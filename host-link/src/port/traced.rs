@@ -1,9 +1,9 @@
-//! Any port with a witness: each frame, both ways, with the time it passed.
+//! Port wrapper that shows each frame, both ways, to a sink, with the time at which it passed.
 
 use std::io;
 use std::time::Duration;
 
-use link_protocol::Direction;
+use link_protocol::{Direction, redact_keys};
 
 use super::FrameCutter;
 use super::Port;
@@ -15,7 +15,8 @@ pub struct TracedFrame<'a> {
     pub at: Duration,
     /// Which way it went.
     pub direction: Direction,
-    /// The bytes as they crossed the wire, with the closing zero; corrupted ones too.
+    /// The bytes as they crossed the wire, with the closing zero; corrupted ones too. A key that a frame carries is replaced by
+    /// zeros ([`redact_keys`]).
     pub bytes: &'a [u8],
 }
 
@@ -60,11 +61,7 @@ impl<P: Port, S: FnMut(TracedFrame<'_>) + Send> Port for TracedPort<P, S> {
         let at = self.port.now();
         let (cutter, sink) = (&mut self.read, &mut self.sink);
         cutter.push(buf.get(..count).unwrap_or_default(), |bytes| {
-            sink(TracedFrame {
-                at,
-                direction: Direction::ToHost,
-                bytes,
-            });
+            show(sink, at, Direction::ToHost, bytes);
         });
         Ok(count)
     }
@@ -94,13 +91,20 @@ impl<P: Port, S: FnMut(TracedFrame<'_>) + Send> TracedPort<P, S> {
         let at = self.port.now();
         let (cutter, sink) = (&mut self.written, &mut self.sink);
         cutter.push(bytes, |bytes| {
-            sink(TracedFrame {
-                at,
-                direction: Direction::ToRobot,
-                bytes,
-            });
+            show(sink, at, Direction::ToRobot, bytes);
         });
     }
+}
+
+/// Shows a frame without its secrets.
+fn show(sink: &mut impl FnMut(TracedFrame<'_>), at: Duration, direction: Direction, bytes: &[u8]) {
+    let mut bytes = bytes.to_vec();
+    redact_keys(&mut bytes);
+    sink(TracedFrame {
+        at,
+        direction,
+        bytes: &bytes,
+    });
 }
 
 #[cfg(test)]
