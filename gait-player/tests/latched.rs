@@ -42,6 +42,25 @@ fn r8_a_low_battery_stops_and_refuses_until_it_is_well() {
     }
 }
 
+/// A tired pack recovers between two strokes; no single dip lasts a second.
+#[test]
+fn r8_a_pack_that_dips_on_every_stroke_stops_the_robot() {
+    let mut bench = Bench::playing(&circle(1.2), play(0, 20_000_000));
+    let mut dips = 0;
+    while bench.output.state == StateName::Playing {
+        // Two dips of 100 ms a cycle, 10 s apart.
+        bench.inputs.battery_mv = Some(4_399);
+        bench.run(5 * TICK);
+        bench.inputs.battery_mv = Some(5_000);
+        bench.run(10 * SECOND - 5 * TICK);
+        dips += 1;
+        assert!(dips <= 10, "the dips do not add up");
+    }
+    println!("R8: a pack that dips for 100 ms on every stroke stops the robot at dip {dips}");
+    assert_eq!((dips, bench.status().cause), (10, StopCause::BatteryLow));
+    bench.done(ARM);
+}
+
 #[test]
 fn r8_no_divider_is_never_low() {
     let mut bench = Bench::new();

@@ -17,7 +17,7 @@ pub(super) enum Finer {
     Causes,
     /// How far a ramp or a cycle has come.
     Progress,
-    /// How long ago something was heard, and since when the battery is low or well.
+    /// Age of the last keep-alive, time that the battery was low in all, and since when it is well.
     Ages,
     /// How long ago the last resets were.
     Resets,
@@ -112,7 +112,10 @@ impl World {
                     self.battery_mv,
                     brain.battery.low(),
                     brain.battery_stops,
-                    age(brain.battery.below_since, 1_000_000),
+                    (brain.battery.low_us > 0).then(|| {
+                        let parts = if finer == Finer::Ages { 2 } else { 1 };
+                        bucket(brain.battery.low_us, 1_000_000, parts)
+                    }),
                     age(brain.battery.well_since, 5_000_000),
                 )
             }),
@@ -179,7 +182,7 @@ pub(super) struct Shape {
     unsaved: (bool, bool),
 }
 
-/// Charge as told, low, stopping for it, and how long low and well.
+/// Voltage, low, stopping for it, time below the limit and time well.
 type BatteryShape = (Option<u16>, bool, bool, Option<u8>, Option<u8>);
 
 /// The session is over USB, the bench window is open, the boot loader was asked for, the lengths are far from those as built.
