@@ -69,6 +69,8 @@ impl Watchdog {
 
     pub(crate) fn start(&mut self) {
         self.peripheral.set_scratch(ARMED, BY_US);
+        // Out of reset its timer stands still while a debugger halts a core, and the PWM slice would keep pulsing.
+        self.peripheral.pause_on_debug(false);
         self.peripheral.start(TIMEOUT);
     }
 
