@@ -49,7 +49,7 @@ mod world;
 pub use camera::{Camera, CameraConfig, Frame, MotiveFile, Point, TrackError};
 pub use config::{TwinConfig, configuration, is_configured_as};
 pub use host_link::port::{VirtualPort, WireSpeed};
-pub use replay::{Difference, ReplayError, Replayed, replay};
+pub use replay::{Difference, Reason, ReplayError, Replayed, Verdict, replay};
 pub use service::serve;
 pub use servos::Servos;
 pub use tank::Tank;

@@ -1,13 +1,17 @@
-//! A link log lived again: what the host sent goes to a fresh brain at the robot's times, and the brain's telemetry is held
-//! against what the robot told. Equal set-points and pulses show that nothing but the frames and the clock decided them.
+//! Replay of a link log: a fresh brain gets the frames that the host sent, at the robot's times, and its telemetry is compared
+//! with the robot's. Equal set-points and pulses show that nothing but the frames and the clock decided them.
 //!
-//! A log knows when a frame left the host, not in which of the robot's ticks it was read. For what moves the robot (arm, play,
-//! pause, stop, commit, …) each tick between the request and its answer is tried with a clone of the brain, and the one that
-//! fits the telemetry until the next request is kept. Everything else (keep-alives, chunks, questions) is given to the tick
-//! after it was sent.
+//! A log has the time at which a frame left the host, not the tick in which the robot read it. The robot's own counts of frames
+//! bound that tick (`arrival`). For frames that move the robot (arm, play, pause, stop, commit, …) and for the keep-alive
+//! before a lost link, each tick of these bounds is tried with a clone of the brain, and the one that fits the telemetry until
+//! the next such frame is kept. Every other frame (keep-alives, chunks, queries) is read within its bounds.
+//!
+//! If the brain differs, and the log does not show when frames came shortly before, or holds too little to compare, the verdict
+//! is [`Verdict::Undecided`].
 //!
 //! A signed log needs no key: the fresh brain has none, and reads past the signatures of what the robot let in.
 
+mod arrival;
 mod events;
 
 use gait_player::storage::MemoryStorage;
@@ -21,7 +25,7 @@ use link_protocol::{
 };
 use swimmer_files::LinkFrame;
 
-use events::{Events, Moving};
+use events::{Events, Moving, Placing};
 
 /// Why a log cannot be lived again.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -49,9 +53,49 @@ pub enum ReplayError {
         "the log begins while the robot is {0:?}; only a log that begins at rest at neutral can be replayed"
     )]
     NotAtRest(StateName),
+    /// Telemetry over more than a day.
+    #[error(
+        "the log's telemetry spans more than 24 hours of the robot's clock; replay takes logs of a day at most, so record each session into a log of its own"
+    )]
+    TooLong,
+    /// Telemetry is missing for longer than the longest detached play.
+    #[error(
+        "the log holds no telemetry for more than an hour after {:.1} s of the robot's clock, so nothing links what follows to what came before; record each session into a log of its own",
+        *robot_us as f64 / 1e6
+    )]
+    Gap {
+        /// Robot time of the last telemetry before the gap.
+        robot_us: u64,
+    },
 }
 
-/// How a log and the brain compare.
+/// Result of a comparison.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// Every piece of telemetry is the same.
+    Same,
+    /// The brain does something else than the robot did.
+    Differs,
+    /// The log does not show enough to tell.
+    Undecided(Reason),
+}
+
+/// Why a comparison decides nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reason {
+    /// No piece of telemetry could be compared.
+    NothingCompared,
+    /// The robot held a gait that the log does not upload; its CRC.
+    MissingTable(u32),
+    /// A play names settings that the log does not hold; their hash.
+    OtherSettings(u32),
+    /// Shortly before the first difference frames were lost, so that the log does not show which of them came, and when.
+    LostFrames,
+    /// More ticks fit the log than were tried.
+    TooManyTicks,
+}
+
+/// Comparison of a log and the brain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Replayed {
     /// Pieces of telemetry that were compared.
@@ -69,6 +113,10 @@ pub struct Replayed {
     /// Hash of the settings that a play of the log names, if the replay has others: the log does not hold all that the robot
     /// was set to.
     pub other_settings: Option<u32>,
+    /// The robot restarted later in the log; the comparison ends there.
+    pub restarted: bool,
+    /// Result of the comparison.
+    pub verdict: Verdict,
 }
 
 /// What the robot told and what the brain does at the same tick.
@@ -90,8 +138,12 @@ const SLACK: u64 = 1;
 const HORIZON: u64 = 150;
 /// Most ticks that are tried for one request.
 const MOST_TRIED: u64 = 100;
+/// Most ticks that are computed for trials: less than a minute of one core.
+const MOST_WORK: u64 = 10_000_000;
+/// Ticks before a difference in which a frame of unknown arrival may be its reason: the lease, and the work on a request.
+const BEARING: u64 = 100;
 
-/// Lives a log again. `table` is what the robot held at the start, where the log does not upload it.
+/// Replays a log. `table` is the gait that the robot held at the start, if the log does not upload it.
 ///
 /// # Errors
 /// [`ReplayError`].
@@ -103,37 +155,118 @@ const MOST_TRIED: u64 = 100;
 /// ```
 pub fn replay(frames: &[LinkFrame], table: Option<&GaitTable>) -> Result<Replayed, ReplayError> {
     let events = Events::read(frames)?;
-    let mut life = Life::new(&events, table);
-    let mut counted = Count::default();
-    for (index, moving) in events.moving.iter().enumerate() {
-        let until = events
-            .moving
-            .get(index + 1)
-            .map_or(u64::MAX, |next| next.first);
-        let tick = life.best_tick(&events, moving, until);
-        if let Some(tick) = tick {
-            life.act(&events, moving, tick, &mut counted);
+    let missing_table = events
+        .table_at_start
+        .filter(|crc32| table.is_none_or(|table| crc32c(table.bytes()) != *crc32));
+    let mut search = Search { left: MOST_WORK };
+    // The lease ends with the keep-alive that was read last: within two ticks the log does not show when that was.
+    let mut best: Option<Attempt> = None;
+    for placing in [Placing::AsSent, Placing::Early, Placing::Late] {
+        let attempt = attempt(&events, table, placing, &mut search);
+        let fits = attempt.count.different == 0;
+        if best.is_none_or(|best| attempt.count.different < best.count.different) {
+            best = Some(attempt);
+        }
+        if fits || missing_table.is_some() {
+            break;
         }
     }
-    life.run(&events, events.last_tick + 1, usize::MAX, &mut counted);
+    let Attempt {
+        count,
+        cut_short,
+        other_settings,
+    } = best.unwrap_or_default();
     Ok(Replayed {
-        compared: counted.compared,
-        different: counted.different,
-        requests: events.moving.len(),
-        first: counted.first,
+        compared: count.compared,
+        different: count.different,
+        requests: events
+            .moving
+            .iter()
+            .filter(|moving| moving.is_request)
+            .count(),
+        first: count.first,
         seconds: events.seconds(),
-        missing_table: events
-            .table_at_start
-            .filter(|crc32| table.is_none_or(|table| crc32c(table.bytes()) != *crc32)),
-        other_settings: life.other_settings,
+        other_settings,
+        missing_table,
+        restarted: events.restarted,
+        verdict: verdict(&events, &count, cut_short, missing_table.map(Reason::MissingTable).or(
+            other_settings.map(Reason::OtherSettings),
+        )),
     })
 }
 
-#[derive(Default)]
+fn verdict(
+    events: &Events,
+    count: &Count,
+    cut_short: Option<u64>,
+    missing: Option<Reason>,
+) -> Verdict {
+    if count.compared == 0 {
+        return Verdict::Undecided(Reason::NothingCompared);
+    }
+    let Some(at) = count.first_tick else {
+        return Verdict::Same;
+    };
+    if let Some(reason) = missing {
+        return Verdict::Undecided(reason);
+    }
+    if cut_short.is_some_and(|tick| tick <= at) {
+        return Verdict::Undecided(Reason::TooManyTicks);
+    }
+    let later = events
+        .uncertain
+        .partition_point(|tick| *tick + BEARING < at);
+    match events.uncertain.get(later) {
+        Some(tick) if *tick <= at => Verdict::Undecided(Reason::LostFrames),
+        _ => Verdict::Differs,
+    }
+}
+
+/// Ticks that trials may still take.
+struct Search {
+    left: u64,
+}
+
+/// A whole run of the brain.
+#[derive(Clone, Copy, Default)]
+struct Attempt {
+    count: Count,
+    /// The first tick at which not every tick was tried that fits the log.
+    cut_short: Option<u64>,
+    /// As [`Replayed::other_settings`].
+    other_settings: Option<u32>,
+}
+
+fn attempt(
+    events: &Events,
+    table: Option<&GaitTable>,
+    placing: Placing,
+    search: &mut Search,
+) -> Attempt {
+    let mut life = Life::new(events, table, placing);
+    let mut done = Attempt::default();
+    for (index, moving) in events.moving.iter().enumerate() {
+        let next = events.moving.get(index + 1);
+        let until = next.map_or(u64::MAX, |next| next.first);
+        let choice = life.choose(events, moving, until, &mut done.count, search);
+        if choice.cut_short {
+            done.cut_short.get_or_insert(life.tick);
+        }
+        if let Some(tick) = choice.tick {
+            life.act(events, moving, tick, &mut done.count);
+        }
+    }
+    life.run(events, events.last_tick + 1, usize::MAX, &mut done.count);
+    done.other_settings = life.other_settings;
+    done
+}
+
+#[derive(Clone, Copy, Default)]
 struct Count {
     compared: usize,
     different: usize,
     first: Option<Difference>,
+    first_tick: Option<u64>,
 }
 
 /// A brain between two ticks.
@@ -148,6 +281,7 @@ struct Life {
     tick: u64,
     /// The next of the log's still frames.
     still: usize,
+    placing: Placing,
     /// The brain has told something.
     greeted: bool,
     battery_mv: Option<u16>,
@@ -157,7 +291,7 @@ struct Life {
 
 impl Life {
     /// A robot just switched on as the log found it.
-    fn new(events: &Events, table: Option<&GaitTable>) -> Self {
+    fn new(events: &Events, table: Option<&GaitTable>, placing: Placing) -> Self {
         let mut flash = table.map_or_else(MemoryStorage::erased, |table| stored(table, events));
         let mut brain = brain(events, events.hello.session);
         let Ok(()) = brain.load(&mut flash);
@@ -168,6 +302,7 @@ impl Life {
             origin_us: events.origin_us,
             tick: 0,
             still: 0,
+            placing,
             greeted: false,
             battery_mv: events.battery_at_start,
             other_settings: None,
@@ -225,7 +360,7 @@ impl Life {
     /// Reads the still frames that are due by a tick and were sent before the frame of this order.
     fn hear(&mut self, events: &Events, by: u64, before: usize) {
         while let Some(still) = events.still.get(self.still)
-            && still.tick <= by
+            && still.tick(self.placing) <= by
             && still.order < before
         {
             self.receive(&still.bytes);
@@ -250,6 +385,7 @@ impl Life {
             count.compared += 1;
             if told.is_none_or(|told| !same(&told, logged)) {
                 count.different += 1;
+                count.first_tick.get_or_insert(self.tick - 1);
                 count.first.get_or_insert(Difference {
                     logged: *logged,
                     replayed: told,
@@ -288,26 +424,77 @@ impl Life {
         }
     }
 
-    /// The tick before which a request was read, by what the robot told afterwards; `None`: it was never read.
-    fn best_tick(&self, events: &Events, moving: &Moving, next: u64) -> Option<u64> {
+    /// The tick before which a frame was read: of those that the log allows, the one that fits the telemetry afterwards.
+    fn choose(
+        &mut self,
+        events: &Events,
+        moving: &Moving,
+        next: u64,
+        count: &mut Count,
+        search: &mut Search,
+    ) -> Choice {
         let first = moving.first.saturating_sub(SLACK).max(self.tick);
-        let last = (moving.last + SLACK).max(first).min(first + MOST_TRIED);
-        let horizon = next.clamp(last + 2, last + HORIZON);
-        let misfit = |read_before: Option<u64>| {
-            let (mut life, mut count) = (self.clone(), Count::default());
-            if let Some(tick) = read_before {
-                life.act(events, moving, tick, &mut count);
-            }
-            life.run(events, horizon, usize::MAX, &mut count);
-            count.different
+        let wanted = (moving.last + SLACK).max(first);
+        let last = wanted.min(first + MOST_TRIED);
+        if first > events.last_tick {
+            // Nothing is compared after it.
+            return Choice {
+                tick: None,
+                cut_short: false,
+            };
+        }
+        // Up to there all trials are the same.
+        self.run(events, first, moving.order, count);
+        let horizon = if moving.is_request {
+            next.clamp(last + 2, last + HORIZON)
+        } else {
+            last + HORIZON / 2
         };
-        let never = (!moving.answered).then_some(None);
-        let candidates = (first..=last).map(Some).chain(never);
-        candidates
-            .map(|tick| (misfit(tick), tick))
-            .min_by_key(|(different, _)| *different)
-            .and_then(|(_, tick)| tick)
+        let mut candidates: Vec<Option<u64>> = (first..=last).map(Some).collect();
+        candidates.sort_by_key(|tick| tick.map(|tick| tick.abs_diff(moving.likely)));
+        if !moving.came {
+            candidates.push(None);
+        }
+        let mut best: Option<(usize, Option<u64>)> = None;
+        let mut cut_short = last < wanted;
+        for tick in candidates {
+            let cost = horizon - first;
+            if search.left < cost {
+                cut_short = true;
+                break;
+            }
+            search.left -= cost;
+            let different = self.misfit(events, moving, tick, horizon);
+            if best.is_none_or(|(least, _)| different < least) {
+                best = Some((different, tick));
+            }
+            if different == 0 {
+                break;
+            }
+        }
+        let likely = Some(moving.likely.clamp(first, last));
+        Choice {
+            tick: best.map_or(likely, |(_, tick)| tick),
+            cut_short: cut_short && best.is_none_or(|(different, _)| different > 0),
+        }
     }
+
+    /// Pieces of telemetry until `horizon` that differ if a frame is read just before a tick, or never.
+    fn misfit(&self, events: &Events, moving: &Moving, tick: Option<u64>, horizon: u64) -> usize {
+        let (mut life, mut count) = (self.clone(), Count::default());
+        if let Some(tick) = tick {
+            life.act(events, moving, tick, &mut count);
+        }
+        life.run(events, horizon, usize::MAX, &mut count);
+        count.different
+    }
+}
+
+/// Tick before which a frame was read; `None`: it never came.
+struct Choice {
+    tick: Option<u64>,
+    /// Not every tick that fits the log was tried, and none of those tried fits the telemetry.
+    cut_short: bool,
 }
 
 /// The brain's clock at a tick: its first is one period after its start.

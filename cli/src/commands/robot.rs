@@ -88,7 +88,10 @@ enum Action {
     Log(Log),
     Hc05(hc05::Hc05),
     Key(key::KeyChange),
-    /// Hold a log against the robot's brain: same frames at the same times, same set-points and pulses?
+    /// Compare a log with the robot's brain: same frames at the same times, same set-points and pulses?
+    ///
+    /// The verdict is the same, differs, or undecided: frames were lost shortly before a difference, or the log holds too little.
+    /// Exit status 0 for the same, 1 for the others.
     Replay(Replay),
 }
 

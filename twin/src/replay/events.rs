@@ -1,27 +1,43 @@
-//! What a log tells, on the robot's ticks.
+//! The events of a log, on the robot's ticks.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use gait_player::TICK_US;
 use link_protocol::{
     Configuration, Direction, HelloReply, Joint, Message, Received, Refusal, Reply, Request,
-    ServoSettings, StateName, Telemetry,
+    ServoSettings, StateName, StopCause, Telemetry,
 };
 use swimmer_files::LinkFrame;
 
+use super::arrival::{FrameCount, PingArrival, Window, windows};
 use super::{BEFORE, ReplayError};
 
-/// A request that moves the robot or changes how it moves.
+/// Longest log that is replayed, in ticks: a day.
+const MOST_TICKS: u64 = 24 * 3600 * 50;
+/// Longest time without telemetry, in ticks: the longest play without a host.
+const LONGEST_GAP: u64 = 3600 * 50;
+/// Longest time from a log's first frame to its first telemetry that is replayed, in ticks.
+const LONGEST_START: u64 = 10 * 50;
+/// Ticks before the end of a lease in which the keep-alive was read that fed it last: 460 ms, and the telemetry's two ticks.
+const LEASE: std::ops::RangeInclusive<u64> = 20..=27;
+/// The same for a keep-alive of which only the host's estimate is known.
+const LONGEST_LEASE: u64 = 50;
+
+/// A frame whose tick is searched: a request that moves the robot or changes how it moves, or a keep-alive that decides when the
+/// lease ends.
 pub(super) struct Moving {
     /// Its place among all frames of the log.
     pub(super) order: usize,
     pub(super) bytes: Vec<u8>,
     /// The first tick that may have seen it.
     pub(super) first: u64,
-    /// The last one: its answer was heard then.
+    /// The last one: its answer was received then.
     pub(super) last: u64,
-    /// It was answered; else it may never have come.
-    pub(super) answered: bool,
+    /// The tick that is tried first.
+    pub(super) likely: u64,
+    /// The log shows that it came.
+    pub(super) came: bool,
+    pub(super) is_request: bool,
 }
 
 /// Anything else that was sent.
@@ -29,8 +45,29 @@ pub(super) struct Still {
     /// Its place among all frames of the log.
     pub(super) order: usize,
     pub(super) bytes: Vec<u8>,
-    /// The first tick that may have seen it.
-    pub(super) tick: u64,
+    /// Ticks that may have seen it.
+    pub(super) window: Window,
+    /// The first tick after it was sent, by the host's estimate.
+    pub(super) sent: u64,
+}
+
+impl Still {
+    pub(super) fn tick(&self, placing: Placing) -> u64 {
+        match placing {
+            Placing::AsSent => self.window.nearest(self.sent),
+            Placing::Early if self.window.counted => self.window.first,
+            Placing::Late if self.window.counted => self.window.last,
+            Placing::Early | Placing::Late => self.window.nearest(self.sent),
+        }
+    }
+}
+
+/// Tick within its window in which a frame is read that moves nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Placing {
+    AsSent,
+    Early,
+    Late,
 }
 
 /// The log on the robot's ticks. Tick 0 is the first that is lived.
@@ -47,6 +84,10 @@ pub(super) struct Events {
     pub(super) battery_at_start: Option<u16>,
     pub(super) state_at_start: StateName,
     pub(super) table_at_start: Option<u32>,
+    /// First ticks of the windows that the robot's counts do not give, in order.
+    pub(super) uncertain: Vec<u64>,
+    /// The robot restarted later in the log.
+    pub(super) restarted: bool,
 }
 
 /// A frame with the message in it, at a time of the robot's clock \[µs\].
@@ -66,33 +107,36 @@ impl Events {
             }
         });
         let (greeting, hello) = greeted.ok_or(ReplayError::NoGreeting)?;
-        // What was told before belongs to another session.
-        let told: Vec<Telemetry> = read
-            .iter()
-            .skip(greeting)
-            .filter(|read| read.frame.direction == Direction::ToHost)
-            .filter_map(|read| match &read.received.message {
-                Ok(Message::Telemetry(telemetry)) => Some(*telemetry),
-                _ => None,
-            })
-            .collect();
+        let whole = read.len();
+        let read = until_restart(read, greeting, &hello);
+        let restarted = read.len() < whole;
+        // Telemetry before the greeting belongs to another session.
+        let told: Vec<Telemetry> = telemetry(&read, greeting).copied().collect();
         let first = told.first().ok_or(ReplayError::NoTelemetry)?;
         let (state, setpoint) = found(&read, greeting).unwrap_or((first.state, first.setpoint));
         if !matches!(state, StateName::Stopped | StateName::EStopped) || setpoint != [0; 2] {
             return Err(ReplayError::NotAtRest(state));
         }
         let clock = Ticks::new(first.robot_us, read.iter().map(|read| read.at_us));
-        let (moving, still) = sent(&read, &clock);
         let telemetry: BTreeMap<u64, Telemetry> = told
             .iter()
             .map(|telemetry| (clock.at(telemetry.robot_us), *telemetry))
             .collect();
+        let last_tick = telemetry.keys().next_back().copied().unwrap_or_default();
+        check_span(&telemetry, last_tick)?;
+        let Sent {
+            moving,
+            still,
+            uncertain,
+        } = sent(&read, &clock, &telemetry, last_tick);
         let facts = Facts::of(&read);
         Ok(Self {
             hello,
             moving,
             still,
-            last_tick: telemetry.keys().next_back().copied().unwrap_or_default(),
+            last_tick,
+            uncertain,
+            restarted,
             origin_us: clock.origin_us,
             configuration: facts.configuration,
             servos: facts.servos,
@@ -110,7 +154,58 @@ impl Events {
     }
 }
 
-/// How the robot was found: the first word on its state after the greeting, asked for or not.
+fn telemetry<'a>(read: &'a [Read<'_>], from: usize) -> impl Iterator<Item = &'a Telemetry> {
+    read.iter()
+        .skip(from)
+        .filter(|read| read.frame.direction == Direction::ToHost)
+        .filter_map(|read| match &read.received.message {
+            Ok(Message::Telemetry(telemetry)) => Some(telemetry),
+            _ => None,
+        })
+}
+
+/// The log up to where the robot restarted: another boot greets, or its clock goes back.
+fn until_restart<'a>(
+    mut read: Vec<Read<'a>>,
+    greeting: usize,
+    hello: &HelloReply,
+) -> Vec<Read<'a>> {
+    /// Telemetry that was overtaken on the way is no restart.
+    const OVERTAKEN_US: u64 = 1_000_000;
+    let mut latest_us = 0;
+    let restart = read.iter().skip(greeting).position(|read| {
+        match (read.frame.direction, &read.received.message) {
+            (Direction::ToHost, Ok(Message::HelloReply(again))) => {
+                again.boot_nonce != hello.boot_nonce
+            }
+            (Direction::ToHost, Ok(Message::Telemetry(telemetry))) => {
+                latest_us = latest_us.max(telemetry.robot_us);
+                telemetry.robot_us.saturating_add(OVERTAKEN_US) < latest_us
+            }
+            _ => false,
+        }
+    });
+    if let Some(restart) = restart {
+        read.truncate(greeting + restart);
+    }
+    read
+}
+
+/// Refuses logs whose telemetry has times that no session has: each tick between them would be computed.
+fn check_span(telemetry: &BTreeMap<u64, Telemetry>, last_tick: u64) -> Result<(), ReplayError> {
+    if last_tick > MOST_TICKS {
+        return Err(ReplayError::TooLong);
+    }
+    let ticks = telemetry.keys().zip(telemetry.keys().skip(1));
+    match ticks.clone().find(|(one, next)| *next - *one > LONGEST_GAP) {
+        Some((one, _)) => Err(ReplayError::Gap {
+            robot_us: telemetry.get(one).map_or(0, |telemetry| telemetry.robot_us),
+        }),
+        None => Ok(()),
+    }
+}
+
+/// State and set-point of the robot as the log begins: its first word on them after the greeting, requested or not.
 fn found(read: &[Read<'_>], greeting: usize) -> Option<(StateName, [i16; 2])> {
     let mut heard = read
         .iter()
@@ -134,7 +229,8 @@ impl Ticks {
         let tick = u64::from(TICK_US);
         let earliest = times.fold(first_us as f64, f64::min).max(0.0);
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // not negative
-        let before = first_us.saturating_sub(earliest as u64) / tick + BEFORE;
+        let before = first_us.saturating_sub(earliest as u64) / tick;
+        let before = before.min(LONGEST_START) + BEFORE;
         // The brain counts its first tick as number 1, so the first telemetry comes an odd number of ticks later.
         let before = before | 1;
         Self {
@@ -144,8 +240,10 @@ impl Ticks {
 
     /// The tick at a time of the robot's clock.
     fn at(&self, robot_us: u64) -> u64 {
-        let tick = u64::from(TICK_US);
-        (robot_us.wrapping_sub(self.origin_us) + tick / 2) / tick
+        let tick = i128::from(TICK_US);
+        // The origin may lie before the robot's start.
+        let since = i128::from(robot_us) - i128::from(self.origin_us.cast_signed());
+        u64::try_from((since.max(0) + tick / 2) / tick).unwrap_or(u64::MAX)
     }
 
     /// The first tick after a time of the robot's clock.
@@ -199,49 +297,162 @@ fn on_the_robots_clock(frames: &[LinkFrame]) -> Result<Vec<Read<'_>>, ReplayErro
         .collect())
 }
 
-/// What was sent: requests that move, each once with the ticks that may have seen it, and the rest.
-fn sent(read: &[Read<'_>], clock: &Ticks) -> (Vec<Moving>, Vec<Still>) {
-    let answers: HashMap<(u16, u16), f64> = read
+/// Frames that were sent.
+struct Sent {
+    moving: Vec<Moving>,
+    still: Vec<Still>,
+    uncertain: Vec<u64>,
+}
+
+/// Sorts the frames that were sent into those whose tick is searched, each once, and the rest.
+fn sent(read: &[Read<'_>], clock: &Ticks, telemetry: &BTreeMap<u64, Telemetry>, end: u64) -> Sent {
+    let answers = answers(read);
+    let windows = arrivals(read, clock, telemetry, end);
+    let ends = lease_ends(telemetry);
+    let mut sent = Sent {
+        moving: Vec::new(),
+        still: Vec::new(),
+        uncertain: Vec::new(),
+    };
+    let mut seen = HashSet::new();
+    let frames = read
         .iter()
+        .enumerate()
+        .filter(|(_, read)| read.frame.direction == Direction::ToRobot);
+    for ((order, read), window) in frames.zip(windows) {
+        // After the last telemetry nothing is compared.
+        let after = clock.after(read.at_us).min(end + 1);
+        let header = read.received.header;
+        let is_request =
+            matches!(&read.received.message, Ok(Message::Request(request)) if moves(request));
+        let (from, to) = if window.counted {
+            (window.first + LEASE.start(), window.last + LEASE.end())
+        } else {
+            (after, after + LONGEST_LEASE)
+        };
+        let ends_lease = matches!(read.received.message, Ok(Message::Heartbeat(_)))
+            && ends
+                .get(ends.partition_point(|end| *end < from))
+                .is_some_and(|end| *end <= to);
+        let bytes = read.frame.bytes.clone();
+        if matches!(read.received.message, Ok(Message::Request(Request::SetKey(_)))) {
+            // Its key is not in the log. A brain without one reads past the signatures.
+            continue;
+        }
+        if !window.counted {
+            sent.uncertain.push(window.nearest(after));
+        }
+        if ends_lease {
+            sent.moving.push(Moving {
+                order,
+                bytes,
+                first: window.first,
+                last: window.last,
+                likely: window.nearest(after),
+                came: window.counted,
+                is_request: false,
+            });
+        } else if !is_request {
+            sent.still.push(Still {
+                order,
+                bytes,
+                window,
+                sent: after,
+            });
+        } else if seen.insert((header.session, header.sequence)) {
+            let answer = answers.get(&(header.session, header.sequence));
+            let (first, last) = if window.counted {
+                (window.first, window.last)
+            } else {
+                let last = answer.map_or(end, |at_us| clock.after(*at_us).min(end + 1));
+                (after, last.max(after))
+            };
+            sent.moving.push(Moving {
+                order,
+                bytes,
+                first,
+                last,
+                likely: after.clamp(first, last),
+                came: answer.is_some(),
+                is_request: true,
+            });
+        }
+    }
+    sent.uncertain.sort_unstable();
+    sent
+}
+
+/// When each request was answered first, on the robot's clock.
+fn answers(read: &[Read<'_>]) -> HashMap<(u16, u16), f64> {
+    read.iter()
         .rev()
         .filter(|read| read.frame.direction == Direction::ToHost)
         .filter(|read| {
             matches!(&read.received.message, Ok(Message::Reply(reply)) if !matches!(reply, Reply::Working))
         })
-        // From the last to the first: what stays is the first answer.
+        // From the last to the first: the first answer stays.
         .map(|read| {
             let header = read.received.header;
             ((header.session, header.sequence), read.at_us)
         })
+        .collect()
+}
+
+fn arrivals(
+    read: &[Read<'_>],
+    clock: &Ticks,
+    telemetry: &BTreeMap<u64, Telemetry>,
+    end: u64,
+) -> Vec<Window> {
+    let received: HashMap<u64, u64> = read
+        .iter()
+        .filter_map(|read| match &read.received.message {
+            Ok(Message::Pong(pong)) => Some((pong.host_us, pong.received_us)),
+            _ => None,
+        })
         .collect();
-    let end = read.last().map_or(0.0, |read| read.at_us);
-    let (mut moving, mut still, mut seen) = (Vec::new(), Vec::new(), HashSet::new());
-    for (order, read) in read.iter().enumerate() {
-        if read.frame.direction != Direction::ToRobot {
-            continue;
-        }
-        let first = clock.after(read.at_us);
-        let header = read.received.header;
-        let moves =
-            matches!(&read.received.message, Ok(Message::Request(request)) if moves(request));
-        if !moves {
-            still.push(Still {
-                order,
-                bytes: read.frame.bytes.clone(),
-                tick: first,
-            });
-        } else if seen.insert((header.session, header.sequence)) {
-            let answer = answers.get(&(header.session, header.sequence));
-            moving.push(Moving {
-                order,
-                bytes: read.frame.bytes.clone(),
-                first,
-                last: clock.after(*answer.unwrap_or(&end)).max(first),
-                answered: answer.is_some(),
-            });
-        }
-    }
-    (moving, still)
+    let frames = || {
+        read.iter()
+            .filter(|read| read.frame.direction == Direction::ToRobot)
+    };
+    let pings: Vec<PingArrival> = frames()
+        .enumerate()
+        .filter_map(|(index, read)| match &read.received.message {
+            Ok(Message::Heartbeat(beat)) => Some(PingArrival {
+                index,
+                tick: received
+                    .get(&beat.host_us)
+                    .map(|received_us| clock.after(*received_us as f64)),
+            }),
+            _ => None,
+        })
+        .collect();
+    let counts: Vec<FrameCount> = telemetry
+        .iter()
+        .map(|(tick, telemetry)| FrameCount {
+            tick: *tick,
+            frames_ok: telemetry.frames_ok,
+        })
+        .collect();
+    let sent: Vec<u64> = frames()
+        .map(|read| clock.after(read.at_us).min(end + 1))
+        .collect();
+    windows(&sent, &pings, &counts, end)
+}
+
+/// Ticks of the telemetry that first reports each loss of the link.
+fn lease_ends(telemetry: &BTreeMap<u64, Telemetry>) -> Vec<u64> {
+    let stops = |telemetry: &Telemetry| {
+        matches!(telemetry.state, StateName::Stopping | StateName::Settling)
+            && telemetry.cause == StopCause::LinkLost
+    };
+    telemetry
+        .iter()
+        .zip(telemetry.values().skip(1))
+        .zip(telemetry.keys().skip(1))
+        .filter(|(((_, before), after), _)| !stops(before) && stops(after))
+        .map(|(_, tick)| *tick)
+        .collect()
 }
 
 fn moves(request: &Request) -> bool {

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use serde::Serialize;
 use swimmer_files::read_link_log;
-use twin::{Difference, ReplayError, Replayed, replay};
+use twin::{Difference, Reason, ReplayError, Replayed, Verdict, replay};
 
 use super::access::Access;
 use super::answers::{answer_no, state, telemetry_angles};
@@ -46,19 +46,26 @@ pub(super) fn log(access: &Access, arguments: &Log, output: Output) -> Outcome {
     Ok(())
 }
 
-/// How a log and the brain compare.
+/// Comparison of a log and the brain.
 #[derive(Debug, Serialize)]
-struct Verdict {
+struct Comparison {
     file: String,
+    /// Shown to be the same: false for a comparison that decides nothing, too.
     same: bool,
+    /// same, differs, undecided
+    verdict: &'static str,
+    /// Why nothing is decided; `null` otherwise.
+    undecided: Option<String>,
     compared: usize,
     different: usize,
     requests: usize,
     seconds: f64,
+    /// The robot restarted later in the log; what follows is not compared.
+    restarted: bool,
     first_difference: Option<Told>,
 }
 
-/// What was told at the first difference.
+/// Robot and brain at the first difference.
 #[derive(Debug, Serialize)]
 struct Told {
     robot_time_s: f64,
@@ -99,15 +106,23 @@ impl fmt::Display for Doing {
     }
 }
 
-impl Verdict {
+impl Comparison {
     fn new(file: String, replayed: &Replayed) -> Self {
+        let (verdict, undecided) = match replayed.verdict {
+            Verdict::Same => ("same", None),
+            Verdict::Differs => ("differs", None),
+            Verdict::Undecided(reason) => ("undecided", Some(sentence(reason))),
+        };
         Self {
             file,
-            same: replayed.different == 0,
+            same: replayed.verdict == Verdict::Same,
+            verdict,
+            undecided,
             compared: replayed.compared,
             different: replayed.different,
             requests: replayed.requests,
             seconds: replayed.seconds,
+            restarted: replayed.restarted,
             first_difference: replayed.first.map(|Difference { logged, replayed }| Told {
                 robot_time_s: Duration::from_micros(logged.robot_us).as_secs_f64(),
                 logged: Doing::new(&logged),
@@ -117,7 +132,31 @@ impl Verdict {
     }
 }
 
-impl fmt::Display for Verdict {
+/// Why nothing is decided, and what to do about it.
+fn sentence(reason: Reason) -> String {
+    match reason {
+        Reason::NothingCompared => {
+            "the log holds no telemetry that could be compared; record for longer than a second"
+                .to_owned()
+        }
+        Reason::MissingTable(crc32) => format!(
+            "the robot held a gait with CRC {crc32:08x} when the log began: name it with --gait"
+        ),
+        Reason::OtherSettings(crc32) => format!(
+            "the robot had settings (hash {crc32:08x}) that the log does not hold: record after `swimmer robot servo` and `swimmer robot configure` in one session"
+        ),
+        Reason::LostFrames => {
+            "frames were lost shortly before the first difference, and the log does not show which of them the robot read, and when; record over a cable or nearer to the robot"
+                .to_owned()
+        }
+        Reason::TooManyTicks => {
+            "the log leaves open for too long when the robot read a request; record over a cable or nearer to the robot"
+                .to_owned()
+        }
+    }
+}
+
+impl fmt::Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
             file,
@@ -132,6 +171,9 @@ impl fmt::Display for Verdict {
             "{file}: {seconds:.1} s, {requests} requests that move the robot, {compared} pieces of telemetry; "
         )?;
         let Some(first) = &self.first_difference else {
+            if *compared == 0 {
+                return write!(f, "undecided.");
+            }
             return write!(
                 f,
                 "the brain gives the same set-points and pulses in all of them."
@@ -145,12 +187,16 @@ impl fmt::Display for Verdict {
             first
                 .replayed
                 .as_ref()
-                .map_or_else(|| "nothing told".to_owned(), ToString::to_string)
-        )
+                .map_or_else(|| "no telemetry".to_owned(), ToString::to_string)
+        )?;
+        if self.undecided.is_some() {
+            write!(f, "\nThat decides nothing.")?;
+        }
+        Ok(())
     }
 }
 
-/// `swimmer robot replay`: exit status 1 where the brain does something else.
+/// `swimmer robot replay`: exit status 1 if the brain does something else, or if the log decides nothing.
 pub(super) fn replay_log(arguments: &Replay, output: Output) -> Outcome {
     let log = read_link_log(&arguments.file).map_err(|error| Failure::bad_input(&error))?;
     if !log.ended {
@@ -173,27 +219,23 @@ pub(super) fn replay_log(arguments: &Replay, output: Output) -> Outcome {
         })
         .transpose()?;
     let replayed = replay(&log.frames, table.as_ref())?;
-    let answer = Verdict::new(arguments.file.display().to_string(), &replayed);
+    let answer = Comparison::new(arguments.file.display().to_string(), &replayed);
+    if replayed.restarted {
+        aside(&format!(
+            "note: the robot restarts in {}: the {:.1} s before are compared",
+            arguments.file.display(),
+            replayed.seconds
+        ));
+    }
     if answer.same {
         output.answer(&answer);
         return Ok(());
     }
-    let missing = replayed.missing_table.map_or_else(String::new, |crc32| {
-        format!(
-            "; the robot held a gait with CRC {crc32:08x} when the log began: name it with --gait"
-        )
-    });
-    let settings = replayed.other_settings.map_or_else(String::new, |crc32| {
-        format!(
-            "; the robot had settings (hash {crc32:08x}) that the log does not hold: record after \
-             `swimmer robot servo` and `swimmer robot configure` in one session"
-        )
-    });
-    answer_no(
-        output,
-        &answer,
-        format!("the log and the brain differ{missing}{settings}"),
-    )
+    let reason = answer.undecided.as_ref().map_or_else(
+        || "the log and the brain differ".to_owned(),
+        |reason| format!("undecided: {reason}"),
+    );
+    answer_no(output, &answer, reason)
 }
 
 impl From<ReplayError> for Failure {
