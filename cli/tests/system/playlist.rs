@@ -51,3 +51,32 @@ fn what_cannot_be_played_is_refused_first() {
     let refused = typed(folder.path(), PLAY).json();
     assert!(refused["error"].is_string(), "{refused}");
 }
+
+/// A link that carries a table in twice the time that the first step lasts: refused before the start, and the robot has not
+/// moved. The same link has time enough if the step has more cycles.
+#[cfg(unix)]
+#[test]
+fn a_link_that_is_too_slow_is_refused_before_the_start() {
+    use crate::binary::TwinProcess;
+
+    for faults in ["rate=400,buffer=8192", "delay=150,clump=230"] {
+        let folder = playlist(&[
+            ("circle:0.7", 1, 6.0),
+            ("circle:0.7", 1, 6.5),
+            ("circle:0.7", 1, 7.0),
+        ]);
+        let _twin = TwinProcess::start(folder.path(), &["--faults", faults]);
+        let play = PLAY.replace("--port twin", "--port robot");
+        let refused = typed(folder.path(), &play).with_status(1);
+        let error = refused.json()["error"].to_string();
+        assert!(
+            error.contains("step 1 of the playlist is over after 6.0 s"),
+            "{error}"
+        );
+        let status = typed(folder.path(), "robot status --port robot --json")
+            .with_status(0)
+            .json();
+        assert_eq!(status["state"], "stopped");
+        assert_eq!(status["cause"], "boot", "it has moved: {status}");
+    }
+}

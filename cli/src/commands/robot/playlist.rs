@@ -7,8 +7,8 @@ use std::path::Path;
 use std::time::Duration;
 
 use forecast::playlist::{self, PlaylistTable, Repeated};
-use host_link::LinkError;
 use host_link::robot::{Leg, Sequence};
+use host_link::{LinkError, Port as _};
 use link_protocol::{Checked, Configuration, Flags, Status, crc32c};
 use serde::Serialize;
 use swimmer_files::{Playlist, SwimmerFile};
@@ -98,7 +98,7 @@ pub(super) fn play(
     }
     let player = Player::of_robot(line.robot.info(), &configuration, file.as_ref());
     let foretold = preflight(&tables, &player, &play.room)?;
-    in_time(&tables, &line)?;
+    in_time(&tables, &line, None)?;
     output.line(&format!(
         "Playing {} steps in {}, which lead to {foretold} from the start. Ctrl-C stops.",
         playlist.steps.len(),
@@ -106,7 +106,14 @@ pub(super) fn play(
     ));
     if let Some(first) = tables.first() {
         let name = playlist.steps[0].gait.readable();
+        let begun = line.robot.port().now();
         send_table(&mut line, &name, &first.table, interrupt)?;
+        let took = line.robot.port().now().saturating_sub(begun);
+        let measured = Sending {
+            bytes: first.table.bytes().len(),
+            took,
+        };
+        in_time(&tables, &line, Some(measured))?;
     }
     let status = through(&mut line, &tables, settings_crc32, interrupt)?;
     let status = ready(&mut line, status);
@@ -193,20 +200,34 @@ fn preflight(tables: &[PlaylistTable], player: &Player, room: &Room) -> Outcome<
     })
 }
 
-/// Each table is there before the one that plays is over.
-fn in_time(tables: &[PlaylistTable], line: &Line) -> Outcome {
+/// Upload of a table over this link, as it went.
+#[derive(Debug, Clone, Copy)]
+struct Sending {
+    bytes: usize,
+    took: Duration,
+}
+
+/// Share by which a later upload may be slower than the one that was measured.
+const SLOWER: f64 = 1.25;
+
+/// Refuses a playlist of which a table would arrive after the end of the one before. The expectation of a link without faults
+/// comes first; once a table was sent, its upload shows what this link carries.
+fn in_time(tables: &[PlaylistTable], line: &Line, measured: Option<Sending>) -> Outcome {
     for pair in tables.windows(2) {
         let bytes = pair[1].table.bytes().len();
-        let takes = line
-            .robot
-            .expected_upload_while_playing(bytes)
-            .as_secs_f64();
-        if takes > pair[0].duration() {
+        let expected = line.robot.expected_upload_while_playing(bytes);
+        let takes = measured.map_or(expected, |sending| {
+            let checked = expected.saturating_sub(line.robot.expected_upload(bytes));
+            let share = bytes as f64 / sending.bytes.max(1) as f64;
+            expected.max(checked + sending.took.mul_f64(SLOWER * share))
+        });
+        if takes.as_secs_f64() > pair[0].duration() {
             return Err(Failure::Tried(format!(
-                "step {} of the playlist is over after {:.1} s, and sending the next over this link takes about {takes:.1} s; \
+                "step {} of the playlist is over after {:.1} s, and sending the next over this link takes about {:.1} s; \
                  give it more cycles",
                 pair[0].step + 1,
-                pair[0].duration()
+                pair[0].duration(),
+                takes.as_secs_f64()
             )));
         }
     }
