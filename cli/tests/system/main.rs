@@ -1,6 +1,7 @@
 //! The shipped binary as its users run it. These tests live beside the binary because only here does Cargo build it
 //! afresh and say where it is (`CARGO_BIN_EXE_swimmer`), so that no stale binary is ever tested.
 
+mod attack;
 mod binary;
 mod certify;
 mod contract_keys;
@@ -32,6 +33,8 @@ mod progress;
 mod pseudo_terminal;
 #[cfg(unix)]
 mod recordings;
+#[cfg(unix)]
+mod secret;
 #[cfg(unix)]
 mod setup;
 #[cfg(unix)]
