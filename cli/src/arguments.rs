@@ -111,7 +111,7 @@ pub(crate) fn period(text: &str) -> Result<f64, String> {
     }
     Err(format!(
         "a robot's cycle takes from {} s to {} s; write its seconds, as 30 or 2.5",
-        f64::from(shortest) * 1e-6,
+        f64::from(shortest) / 1e6,
         longest / 1_000_000
     ))
 }

@@ -54,7 +54,7 @@ pub struct PlaylistTable {
 impl PlaylistTable {
     /// Duration of all its cycles \[s\].
     pub fn duration(&self) -> f64 {
-        f64::from(self.cycles) * f64::from(self.period_us) * 1e-6
+        f64::from(self.cycles) * f64::from(self.period_us) / 1e6
     }
 }
 
@@ -70,13 +70,14 @@ const SWING: f64 = 1.0013 / 1.005;
 /// ```
 /// // The servos need 2.75 s; 1/64 of the period is spent standing.
 /// let period = forecast::playlist::step_period(2.75, 3.5);
-/// assert!((period - 2.82).abs() < 1e-9, "{period}");
+/// assert_eq!(period, 2.82);
 /// ```
 pub fn step_period(shortest: f64, max_rate: f64) -> f64 {
-    let tick = f64::from(TICK_US) * 1e-6;
+    let tick = f64::from(TICK_US) / 1e6;
     let standing = shortest / (1.0 - 2.0 * STAND);
     let rounded = standing * SWING + ROUNDING * MAX_KNOTS as f64 / max_rate;
-    (standing.max(rounded) / tick - 1e-9).ceil() * tick
+    // Divided last: the quotient of whole microseconds prints with no more digits than it has.
+    (standing.max(rounded) / tick - 1e-9).ceil() * f64::from(TICK_US) / 1e6
 }
 
 /// The tables of a playlist, in order.

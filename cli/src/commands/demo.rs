@@ -287,7 +287,7 @@ impl<'a> Round<'a> {
                 } => Refused::Here(error.into()),
                 error => Refused::Everywhere(error.into()),
             })?;
-        let shortest_s = f64::from(info.min_period_us) * 1e-6;
+        let shortest_s = f64::from(info.min_period_us) / 1e6;
         Ok(PERIOD_S.max((1.1 * shortest_s).ceil()))
     }
 

@@ -39,8 +39,8 @@ pub(crate) struct Twin {
     #[arg(long, value_name = "SWIMMER", default_value = "robot")]
     swimmer: String,
     /// Faults of the link, both directions: drop=P,flip=P,duplicate=P,reorder=P (a chance per frame, 5% or 0.05),
-    /// delay=MS, clump=BYTES, stale=BYTES (let out again after a silence), baud=RATE, disconnect=START:LENGTH or
-    /// START:LENGTH:EVERY (ms)
+    /// delay=MS, clump=BYTES, stale=BYTES (let out again after a silence), baud=RATE, rate=BYTES (a second, towards the robot),
+    /// buffer=BYTES (that wait for that rate; what finds no room is lost), disconnect=START:LENGTH or START:LENGTH:EVERY (ms)
     #[arg(long, value_name = "FAULTS", default_value = "", hide_default_value = true, value_parser = faults)]
     faults: Faults,
     /// Seed of faults and cameras

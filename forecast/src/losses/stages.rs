@@ -122,7 +122,7 @@ pub(crate) fn verdict(
         .and_then(|()| facts.allow_period(&limits, period_us));
     Verdict {
         refused: allowed.err().map(|refusal| refusal.to_string()),
-        min_period: f64::from(facts.min_period_us(&limits)) * 1e-6,
+        min_period: f64::from(facts.min_period_us(&limits)) / 1e6,
     }
 }
 

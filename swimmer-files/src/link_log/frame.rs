@@ -107,10 +107,10 @@ fn decoded(received: &Received) -> Value {
 pub(super) fn telemetry_json(telemetry: &Telemetry) -> Value {
     let [phi1, phi2] = telemetry
         .setpoint
-        .map(|units| f64::from(units) * ANGLE_UNIT);
-    let [pulse1, pulse2] = telemetry.pulse_ns.map(|ns| f64::from(ns) * 1e-3);
+        .map(|units| f64::from(units) / UNITS_PER_RADIAN);
+    let [pulse1, pulse2] = telemetry.pulse_ns.map(|ns| f64::from(ns) / 1e3);
     let mut json = json!({
-        "robot_time_s": telemetry.robot_us as f64 * 1e-6,
+        "robot_time_s": telemetry.robot_us as f64 / 1e6,
         "state": format!("{:?}", telemetry.state),
         "cause": format!("{:?}", telemetry.cause),
         "flags": telemetry.flags.0,
@@ -128,13 +128,13 @@ pub(super) fn telemetry_json(telemetry: &Telemetry) -> Value {
         "frames_bad": telemetry.frames_bad,
     });
     if let (Value::Object(fields), Some(millivolts)) = (&mut json, telemetry.battery_mv) {
-        fields.insert("battery_v".to_owned(), json!(f64::from(millivolts) * 1e-3));
+        fields.insert("battery_v".to_owned(), json!(f64::from(millivolts) / 1e3));
     }
     json
 }
 
-/// [`link_protocol::ANGLE_UNIT_RAD`] without the digits of single precision.
-const ANGLE_UNIT: f64 = 1e-4;
+/// The inverse of [`link_protocol::ANGLE_UNIT_RAD`]: divided by it, an angle has no more digits than the wire gives it.
+const UNITS_PER_RADIAN: f64 = 1e4;
 
 fn message_json(message: &Message) -> Value {
     let json = match message {

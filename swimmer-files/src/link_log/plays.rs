@@ -42,11 +42,11 @@ pub fn plays(frames: &[LinkFrame]) -> Vec<Play> {
         };
         match (frame.direction, message) {
             (Direction::ToRobot, Message::Request(Request::Play(play))) => {
-                period_s = Some(f64::from(play.period_us) * 1e-6);
+                period_s = Some(f64::from(play.period_us) / 1e6);
                 asked = true;
             }
             (Direction::ToHost, Message::Reply(Reply::Status(status))) if status.period_us > 0 => {
-                period_s = Some(f64::from(status.period_us) * 1e-6);
+                period_s = Some(f64::from(status.period_us) / 1e6);
             }
             (Direction::ToHost, Message::Telemetry(told)) => {
                 let plays_now = matches!(told.state, StateName::Playing | StateName::Paused);
@@ -75,7 +75,7 @@ pub fn plays(frames: &[LinkFrame]) -> Vec<Play> {
 }
 
 fn play(told: &[Telemetry], period_s: f64) -> Option<Play> {
-    let seconds = |telemetry: &Telemetry| telemetry.robot_us as f64 * 1e-6;
+    let seconds = |telemetry: &Telemetry| telemetry.robot_us as f64 / 1e6;
     let (first, last) = (told.first()?, told.last()?);
     let mut starts = Vec::new();
     let mut unsteady = Vec::new();
@@ -105,7 +105,7 @@ fn play(told: &[Telemetry], period_s: f64) -> Option<Play> {
         unsteady,
         told: playing
             .map(|t| {
-                let angles = t.setpoint.map(|angle| f64::from(angle) * 1e-4);
+                let angles = t.setpoint.map(|angle| f64::from(angle) / 1e4);
                 (f64::from(t.phase) / 65_536.0, angles)
             })
             .collect(),

@@ -67,7 +67,7 @@ impl Round<'_> {
         let gait = AnyGait::from_file(&file).map_err(|error| Failure::tried(&error))?;
         let table = super::table_of(&gait).map_err(|error| Failure::tried(&error))?;
         let info = self.laboratory.upload(&table)?;
-        let shortest_s = f64::from(info.min_period_us) * 1e-6;
+        let shortest_s = f64::from(info.min_period_us) / 1e6;
         let period_s = (timing.period.max(shortest_s) * 1e3).ceil() / 1e3;
         self.laboratory
             .swim(CYCLES, Duration::from_secs_f64(period_s), &track)?;

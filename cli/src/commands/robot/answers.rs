@@ -94,7 +94,7 @@ impl Gait {
             knots: table.knots,
             crc32: format!("{:08x}", table.crc32),
             stored: table.stored,
-            min_period_s: f64::from(table.min_period_us) * 1e-6,
+            min_period_s: f64::from(table.min_period_us) / 1e6,
         }
     }
 }
@@ -188,13 +188,13 @@ impl Doing {
             cycle: status.cycle,
             cycles: (status.cycles > 0).then_some(status.cycles),
             phase: f64::from(status.phase) / 65_536.0,
-            period_s: (status.period_us > 0).then(|| f64::from(status.period_us) * 1e-6),
+            period_s: (status.period_us > 0).then(|| f64::from(status.period_us) / 1e6),
             setpoint_rad: status
                 .setpoint
                 .map(|units| f64::from(units) * f64::from(link_protocol::ANGLE_UNIT_RAD)),
             battery_v: status
                 .battery_mv
-                .map(|millivolts| f64::from(millivolts) * 1e-3),
+                .map(|millivolts| f64::from(millivolts) / 1e3),
             gait: status.table.as_ref().map(Gait::new),
             robot_time_s: std::time::Duration::from_micros(status.robot_us).as_secs_f64(),
         }
@@ -278,7 +278,7 @@ pub(super) fn telemetry_line(telemetry: &Telemetry) -> String {
         battery(
             telemetry
                 .battery_mv
-                .map(|millivolts| f64::from(millivolts) * 1e-3)
+                .map(|millivolts| f64::from(millivolts) / 1e3)
         ),
         telemetry.frames_bad,
     )

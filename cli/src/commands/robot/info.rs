@@ -57,7 +57,7 @@ fn answer(
         ResetReason::Pin => "reset pin",
     };
     let limits = &hello.limits;
-    let pulse_us = [limits.pulse_min_ns, limits.pulse_max_ns].map(|ns| f64::from(ns) * 1e-3);
+    let pulse_us = [limits.pulse_min_ns, limits.pulse_max_ns].map(|ns| f64::from(ns) / 1e3);
     let gait = table.map(Gait::new);
     let mut answer = Document::default();
     answer

@@ -49,7 +49,7 @@ impl Played {
             state: state(status.state),
             cause: cause(status.cause),
             cycles: status.cycle,
-            period_s: f64::from(status.period_us) * 1e-6,
+            period_s: f64::from(status.period_us) / 1e6,
             detached,
             remaining_s: Playing::of(status).remaining_s(),
         }

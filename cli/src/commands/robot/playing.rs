@@ -23,7 +23,7 @@ impl Playing {
         Self {
             done: done(status.cycle, status.phase),
             cycles: (status.cycles > 0).then_some(status.cycles),
-            period_s: f64::from(status.period_us) * 1e-6,
+            period_s: f64::from(status.period_us) / 1e6,
         }
     }
 

@@ -73,7 +73,7 @@ impl Dashboard {
             Line::from(format!("pulses   {}", pulses(telemetry.pulse_ns))),
             Line::from(format!(
                 "battery  {}",
-                answers::battery(telemetry.battery_mv.map(|mv| f64::from(mv) * 1e-3))
+                answers::battery(telemetry.battery_mv.map(|mv| f64::from(mv) / 1e3))
             ))
             .style(warning(telemetry.flags.contains(Flags::BATTERY_LOW))),
             Line::from(if flags.is_empty() {
@@ -229,8 +229,8 @@ fn pulses([front, back]: [u32; 2]) -> String {
     }
     format!(
         "{:.1} µs, {:.1} µs",
-        f64::from(front) * 1e-3,
-        f64::from(back) * 1e-3
+        f64::from(front) / 1e3,
+        f64::from(back) / 1e3
     )
 }
 

@@ -91,10 +91,10 @@ impl Found {
         let reversed = before.reversed != self.mirrored;
         // The pulse at which it stands straight, in tenths of a µs.
         let away_us = -self.offset / (slope * gain) * sign(reversed);
-        let centre_us = f64::from(before.centre_ns) * 1e-3 + away_us;
+        let centre_us = f64::from(before.centre_ns) / 1e3 + away_us;
         ServoSettings {
             centre_ns: (centre_us * 10.0).round() as u32 * 100,
-            slope_rad_per_us: ((slope * gain * 1e6).round() * 1e-6) as f32,
+            slope_rad_per_us: ((slope * gain * 1e6).round() / 1e6) as f32,
             reversed,
             trim: 0,
         }

@@ -75,7 +75,7 @@ impl Bench<'_> {
         let base = swimmer.servo.unwrap_or_default();
         Ok(SwimmerFile {
             servo: Some(ServoFile {
-                max_angle: (max_angle * 1e4).round() * 1e-4,
+                max_angle: (max_angle * 1e4).round() / 1e4,
                 max_rate: f64::from(wanted.max_rate).min(base.max_rate),
                 dead_band: export::rounded(joints[0].dead_band.max(joints[1].dead_band)),
                 ..base
