@@ -54,10 +54,9 @@ pub(super) struct Still {
 impl Still {
     pub(super) fn tick(&self, placing: Placing) -> u64 {
         match placing {
-            Placing::AsSent => self.window.nearest(self.sent),
             Placing::Early if self.window.counted => self.window.first,
             Placing::Late if self.window.counted => self.window.last,
-            Placing::Early | Placing::Late => self.window.nearest(self.sent),
+            Placing::AsSent | Placing::Early | Placing::Late => self.window.nearest(self.sent),
         }
     }
 }
