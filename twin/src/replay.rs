@@ -189,9 +189,14 @@ pub fn replay(frames: &[LinkFrame], table: Option<&GaitTable>) -> Result<Replaye
         other_settings,
         missing_table,
         restarted: events.restarted,
-        verdict: verdict(&events, &count, cut_short, missing_table.map(Reason::MissingTable).or(
-            other_settings.map(Reason::OtherSettings),
-        )),
+        verdict: verdict(
+            &events,
+            &count,
+            cut_short,
+            missing_table
+                .map(Reason::MissingTable)
+                .or(other_settings.map(Reason::OtherSettings)),
+        ),
     })
 }
 

@@ -334,7 +334,10 @@ fn sent(read: &[Read<'_>], clock: &Ticks, telemetry: &BTreeMap<u64, Telemetry>, 
                 .get(ends.partition_point(|end| *end < from))
                 .is_some_and(|end| *end <= to);
         let bytes = read.frame.bytes.clone();
-        if matches!(read.received.message, Ok(Message::Request(Request::SetKey(_)))) {
+        if matches!(
+            read.received.message,
+            Ok(Message::Request(Request::SetKey(_)))
+        ) {
             // Its key is not in the log. A brain without one reads past the signatures.
             continue;
         }
