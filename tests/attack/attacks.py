@@ -193,7 +193,7 @@ def worn_flash(host):
     """The stored table again and again, and settings that do not change: each a write of flash."""
     table = r.circle(0.9)
     host.upload(table)
-    host.until(lambda told: not told.flags & r.UNSAVED, "the table in flash")
+    host.until(lambda told: not told.flags & r.UNSAVED, "the table in flash", since_us=host.status().robot_us)
     host.history.clear()
     for _ in range(5):
         host.upload(table)

@@ -261,11 +261,12 @@ class Robot:
         for _ in self.frames(seconds):
             pass
 
-    def until(self, holds, what, seconds=PATIENCE_S):
-        """Waits until the telemetry says so."""
+    def until(self, holds, what, seconds=PATIENCE_S, since_us=0):
+        """Waits for telemetry that satisfies a condition and was sent at `since_us` of the robot's clock or later."""
         for frame in self.frames(seconds):
-            if frame.kind == wire.TELEMETRY and frame.session == self.session and holds(self.told):
-                return self.told
+            if frame.kind == wire.TELEMETRY and frame.session == self.session:
+                if self.told.robot_us >= since_us and holds(self.told):
+                    return self.told
         raise Silence(f"waited for {what} in vain; the robot said last: {self.told}")
 
     # Session and requests.
@@ -340,9 +341,9 @@ class Robot:
         return (now.table.crc32 if now.table else 0), now.settings_crc32
 
     def stop(self):
+        """Stops and waits for rest."""
         self.ask(varint(STOP))
-        if self.told is None or self.told.state not in ("Stopped", "EStopped"):
-            self.until(lambda told: told.state in ("Stopped", "EStopped"), "rest")
+        self.until(lambda told: told.state in ("Stopped", "EStopped"), "rest", since_us=self.status().robot_us)
 
 
 def circle(radius, knots=64, phase=0.0):
