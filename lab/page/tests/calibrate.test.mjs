@@ -256,3 +256,25 @@ test("what is missing of a campaign is named", async (context) => {
   assert.match(await tab.text("#calibrate [role=alert]"), /circle-40\.csv: the campaign names it, and it was not dropped/);
   await tab.close();
 });
+
+for (const [name, launch] of Object.entries(BROWSERS)) {
+  test(`${name}: a wrong file is named and stands in the way of no other`, async () => {
+    const browser = await launch();
+    const tab = await Tab.open(browser, { hash: "#room=calibrate" });
+    const wrong = join(folder, "photo.csv");
+    writeFileSync(wrong, Buffer.from([0x89, 0x50, 0x4e, 0x47, 0, 1, 2, 3]));
+    await tab.drop(wrong);
+    const problem = () => tab.text('#calibrate [role="alert"]');
+    assert.ok((await problem()).includes("photo.csv"), await problem());
+    const broken = join(folder, "broken.toml");
+    writeFileSync(broken, "[[run]]\ntrack = ");
+    await tab.drop(broken, paths.find((path) => path.endsWith("circle-40.csv")));
+    assert.ok((await problem()).includes("broken.toml"), await problem());
+    assert.ok((await tab.text("#tracks")).includes("circle-40.csv"), "the good one of the two is read");
+    await tab.drop(...paths);
+    await tab.until(() => document.querySelector("#fit-exact") !== null, undefined, "the fit");
+    assert.equal(await problem(), null);
+    assert.ok(!(await tab.text("#tracks")).includes("photo.csv"));
+    await browser.close();
+  });
+}

@@ -56,14 +56,26 @@ export async function open(files: readonly File[]): Promise<void> {
   // What was fitted of the files before is fitted anew at the end.
   [further.value, noFurther.value] = [null, ""];
   begin("reading the files");
-  for (const file of files) dropped.set(file.name, new Uint8Array(await file.arrayBuffer()));
+  const unread: string[] = [];
+  const come: [string, Uint8Array][] = [];
+  for (const file of files) {
+    try {
+      come.push([file.name, new Uint8Array(await file.arrayBuffer())]);
+    } catch (error) {
+      // A folder, or a file that is gone.
+      unread.push(`${file.name}: ${reason(error)}`);
+    }
+  }
+  // A campaign takes the place of the one before.
+  if (come.some(isCampaign)) dropped = new Map([...dropped].filter((file) => !isCampaign(file)));
+  for (const [name, bytes] of come) dropped.set(name, bytes);
   try {
-    await survey();
-    const isCampaign = ([name, bytes]: [string, Uint8Array]) => name.endsWith(".toml") && new TextDecoder().decode(bytes).includes("[[run]]");
+    unread.push(...(await survey(new Set(come.map(([name]) => name)))));
     if ([...dropped].some(isCampaign)) await calibrate();
   } catch (error) {
-    problem.value = reason(error);
+    unread.push(reason(error));
   }
+  problem.value = unread.join("; ");
   opening = false;
   doing.value = null;
   if (also.value.length > 0) fitting.give(also.value);
@@ -100,14 +112,25 @@ function forget(): void {
   [fit.value, evidence.value, assessment.value, advice.value, further.value, noFurther.value] = [null, null, null, null, null, ""];
 }
 
-async function survey(): Promise<void> {
-  const known = new Set(tracks.value.map(({ name }) => name));
+const isCampaign = ([name, bytes]: [string, Uint8Array]) => name.endsWith(".toml") && new TextDecoder().decode(bytes).includes("[[run]]");
+
+/** Reads the tracking files among `come`. One that cannot be read is let go, so that it stands in the way of no other; returns why. */
+async function survey(come: ReadonlySet<string>): Promise<string[]> {
+  const unread: string[] = [];
   for (const [name, bytes] of dropped) {
-    if (/\.(toml|txt|gait|mcap)$/.test(name) || known.has(name)) continue;
+    if (/\.(toml|txt|gait|mcap)$/.test(name) || !come.has(name)) continue;
+    tracks.value = tracks.value.filter((track) => track.name !== name);
     begin(`reading ${name}`);
-    const holds = await lab.json<Holdings>("tracks", packed([[name, bytes]]));
-    tracks.value = [...tracks.value, { name, holds }];
+    try {
+      const holds = await lab.json<Holdings>("tracks", packed([[name, bytes]]));
+      tracks.value = [...tracks.value, { name, holds }];
+    } catch (error) {
+      if (reason(error) === STOPPED) throw error;
+      dropped.delete(name);
+      unread.push(reason(error).includes(name) ? reason(error) : `${name}: ${reason(error)}`);
+    }
   }
+  return unread;
 }
 
 async function calibrate(): Promise<void> {

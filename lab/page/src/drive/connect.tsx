@@ -3,12 +3,15 @@
 import { signal } from "@preact/signals";
 import { shown } from "../explore/document.ts";
 import { swimmer } from "../explore/model.ts";
+import { OpenButton } from "../files/open-button.tsx";
 import { connect, disconnect, leaveWheel, link, served, takeWheel, wheel } from "./robot.ts";
 import { serial } from "./wires.ts";
 
 const BAUD = 115_200;
 /** The text of a key file, for a robot that has a key. */
 const key = signal<{ name: string; text: string } | null>(null);
+/** Why the key that was chosen last is none. */
+const noKey = signal("");
 const refused = signal("");
 const socket = served();
 
@@ -36,6 +39,7 @@ export function Connect() {
           <span class="soft">{name}</span>
           <button onClick={disconnect}>Disconnect</button>
         </div>
+        {key.value && <p class="soft">Signed with the key {key.value.name}.</p>}
         {reason && <p class={state === "gone" ? "error" : "soft"} role="status">{reason}</p>}
         <Wheel />
       </section>
@@ -60,21 +64,45 @@ export function Connect() {
           {socket ? "The robot of the `swimmer lab` that served this page." : "Start `swimmer lab --port PORT` and open the address that it prints."}
         </span>
       </div>
-      <label class="soft key">
-        Key file, for a robot that has a key:{" "}
-        <input
-          type="file"
-          aria-label="Key file"
-          onChange={(event) => {
-            const file = event.currentTarget.files?.[0];
-            if (!file) key.value = null;
-            else void file.text().then((text) => (key.value = { name: file.name, text }));
-          }}
-        />
-      </label>
+      <KeyField />
       {refused.value && <p class="error" role="status">{refused.value}</p>}
       <p class="soft">Tried with the robot in the page, with a serial port played by a test, and over the WebSocket; no real port and no Android phone was tried.</p>
     </section>
+  );
+}
+
+/** A key is 32 hexadecimal digits in one line; lines that begin with # say whose it is. */
+function take(name: string, text: string): void {
+  const lines = text.split(/\r?\n/).map((line) => line.trim()).filter((line) => line !== "" && !line.startsWith("#"));
+  const isKey = lines.length === 1 && /^[0-9a-f]{32}$/i.test(lines[0] ?? "");
+  key.value = isKey ? { name, text } : null;
+  noKey.value = isKey ? "" : `${name} holds no key: 32 hexadecimal digits in one line are one; \`swimmer robot key make FILE\` writes one.`;
+}
+
+/** For a robot that has a key: a file of it, or its digits typed. What is in force is named, and can be removed. */
+function KeyField() {
+  if (key.value) {
+    return (
+      <p class="key" id="key">
+        <span>Key: {key.value.name}</span> <button class="small" onClick={() => (key.value = null)}>Remove</button>
+      </p>
+    );
+  }
+  return (
+    <div class="key" id="key">
+      <span class="soft">Key, only for a robot that has one:</span>
+      <OpenButton id="key-file" name="Choose file…" accept="" open={([file]) => file && void file.text().then((text) => take(file.name, text))} />
+      <input
+        type="password"
+        id="key-digits"
+        aria-label="Key, 32 hexadecimal digits"
+        placeholder="or its 32 digits"
+        autocomplete="off"
+        spellcheck={false}
+        onChange={(event) => event.currentTarget.value !== "" && take("as typed", event.currentTarget.value)}
+      />
+      {noKey.value && <p class="error" role="alert">{noKey.value}</p>}
+    </div>
   );
 }
 

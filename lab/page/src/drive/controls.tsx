@@ -1,27 +1,16 @@
-// What is asked of the robot, and what it will make of the gait, told before it is sent.
+// Controls: upload, arm, play; the forecast of the gait that is shown, before it is sent.
 
-import { computed, effect, signal } from "@preact/signals";
+import { signal } from "@preact/signals";
 import { activeGait, edit, shown } from "../explore/document.ts";
-import { asked, swimmer } from "../explore/model.ts";
+import { asked } from "../explore/model.ts";
 import { figure, length } from "../explore/names.ts";
-import { busy, cancelUpload, configuration, foretell, foretold, held, hello, link, progress, request, said, stop, table, telemetry, upload } from "./robot.ts";
+import { comparison, forecast, inHex } from "./gait.ts";
+import { busy, cancelUpload, held, link, progress, request, said, stop, table, telemetry, upload } from "./robot.ts";
 
-/** 0 plays until told otherwise. */
-const cycles = signal(0);
-
-const question = computed(() => {
-  const gait = asked(activeGait(shown.value));
-  if (!gait || !swimmer.value || link.value.state !== "open") return null;
-  const robot = hello.value && configuration.value ? { hello: hello.value, configuration: configuration.value } : null;
-  return { swimmer: swimmer.value.toml, gait, period_s: shown.value.period, robot };
-});
-let pause: ReturnType<typeof setTimeout> | undefined;
-effect(() => {
-  const about = question.value;
-  clearTimeout(pause);
-  // A hand that drags is let come to rest.
-  if (about) pause = setTimeout(() => foretell(about), 150);
-});
+const STANDARD_CYCLES = 3;
+const cycles = signal(STANDARD_CYCLES);
+/** A play without end, ended by the link or by a stop; only where it was chosen. */
+const endless = signal(false);
 
 export function Controls() {
   if (link.value.state !== "open") return null;
@@ -29,20 +18,23 @@ export function Controls() {
   const rest = state === "Stopped";
   const period = shown.value.period;
   const gait = asked(activeGait(shown.value));
+  const mayPlay = state === "Holding" && comparison.value.is === "same";
+  const play = { cycles: endless.value ? 0 : cycles.value, period_us: Math.round(period * 1e6), detached: false, checked: { table_crc32: table.value?.crc32 ?? 0, settings_crc32: held.value?.settings_crc32 ?? 0 } };
   return (
     <section class="card" aria-label="Controls">
       <h2>Gait of Explore, on this robot</h2>
+      <Which />
       <Preflight />
       <div class="fields">
         <label>period [s] <input type="number" min={0.1} max={4000} step={0.1} value={period} onChange={(event) => event.currentTarget.valueAsNumber > 0 && edit({ period: event.currentTarget.valueAsNumber })} /></label>
-        <label>cycles <input type="number" min={0} step={1} value={cycles.value} aria-describedby="endless" onChange={(event) => (cycles.value = Math.max(0, Math.round(event.currentTarget.valueAsNumber || 0)))} /></label>
-        <span class="soft" id="endless">0: until stopped</span>
+        <label>cycles <input type="number" id="cycles" min={1} step={1} value={cycles.value} disabled={endless.value} onChange={(event) => (cycles.value = Math.max(1, Math.round(event.currentTarget.valueAsNumber || STANDARD_CYCLES)))} /></label>
+        <label class="check"><input type="checkbox" id="endless" checked={endless.value} onChange={(event) => (endless.value = event.currentTarget.checked)} /> until stopped</label>
       </div>
       <div class="bar-of-buttons">
         <button id="upload" onClick={() => gait && upload(gait)} disabled={!gait || busy.value !== ""}>Upload</button>
         {progress.value && <button onClick={cancelUpload}>Break off</button>}
         <button id="arm" onClick={() => request("Arm", "arm")} disabled={!rest || busy.value !== ""}>Arm</button>
-        <button id="play" class="first" onClick={() => request({ Play: { cycles: cycles.value, period_us: Math.round(period * 1e6), detached: false, checked: { table_crc32: table.value?.crc32 ?? 0, settings_crc32: held.value?.settings_crc32 ?? 0 } } }, "play")} disabled={state !== "Holding" || table.value === null}>Play</button>
+        <button id="play" class="first" title={mayPlay ? "" : WHY_NOT[comparison.value.is]} onClick={() => request({ Play: play }, "play")} disabled={!mayPlay}>Play</button>
         <button id="pause" onClick={() => request({ Pause: { detached: false } }, "pause")} disabled={state !== "Playing"}>Pause</button>
         <button id="resume" onClick={() => request("Resume", "resume")} disabled={state !== "Paused"}>Resume</button>
         <button id="stop" onClick={stop}>Stop</button>
@@ -54,8 +46,33 @@ export function Controls() {
   );
 }
 
+const WHY_NOT = {
+  unknown: "It is not known yet which gait the robot holds.",
+  none: "The robot holds no gait: upload one.",
+  same: "Arm the robot first.",
+  other: "The robot holds another gait than the one shown: upload it first.",
+};
+
+/** Names both gaits, and says what to do where they differ. */
+function Which() {
+  const it = comparison.value;
+  const text = {
+    unknown: "Comparing the gait shown with the robot’s …",
+    none: "The robot holds no gait: upload the one shown.",
+    same: "The gait is on the robot",
+    other: "The robot holds another gait than the one shown",
+  }[it.is];
+  return (
+    <p id="held" data-held={it.is} class={it.is === "other" ? "warning" : it.is === "same" ? "good" : "soft"} role="status">
+      {text}
+      {it.is === "same" && ` (CRC ${inHex(it.crc32)}).`}
+      {it.is === "other" && ` (there CRC ${inHex(it.crc32)}, here ${inHex(it.shown)}). Upload sends the one shown; until then Play is off.`}
+    </p>
+  );
+}
+
 function Preflight() {
-  const answer = foretold.value;
+  const answer = forecast.value;
   if (!answer) return <p class="soft">Foretelling …</p>;
   const { told, reason } = answer;
   if (!told) return <p class="error">{reason}</p>;

@@ -1,11 +1,11 @@
-// Drive: connect, upload, arm, play, stop; what the robot tells, as it tells it.
+// Drive: connect, upload, arm, play, stop; telemetry as it comes.
 
 import "./drive.css";
 import { Connect } from "./connect.tsx";
 import { Controls } from "./controls.tsx";
 import { Follow } from "./follow.tsx";
 import { Plots } from "./plots.tsx";
-import { estop, link, stale, telemetry } from "./robot.ts";
+import { link, stale } from "./robot.ts";
 import { Status } from "./status.tsx";
 
 export function Drive() {
@@ -23,18 +23,6 @@ export function Drive() {
         <Status />
         <Plots />
       </div>
-      {connected && <EStop />}
     </div>
-  );
-}
-
-/** It asks nothing and waits for nothing. */
-function EStop() {
-  const latched = telemetry.value?.state === "EStopped";
-  return (
-    <button class="estop" id="estop" onClick={estop} aria-keyshortcuts="Space">
-      <strong>E-STOP</strong>
-      <span>{latched ? "latched: pulses are off" : "pulses off at once · space bar"}</span>
-    </button>
   );
 }

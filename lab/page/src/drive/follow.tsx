@@ -4,22 +4,31 @@ import { useEffect, useRef } from "preact/hooks";
 import { activeGait, shown } from "../explore/document.ts";
 import { painted, fullScale } from "../explore/colours.ts";
 import { path as line } from "../explore/map.tsx";
-import { curveOf, curves, map } from "../explore/model.ts";
+import { curveOf, curveOfText, curves, map } from "../explore/model.ts";
+import { pairs } from "../explore/spline.ts";
 import { dark } from "../shell/theme.tsx";
+import { comparison, robotGait } from "./gait.ts";
 import { path, stands, telemetry } from "./robot.ts";
 
 export function Follow() {
   const d = shown.value.halfWidth;
   const told = telemetry.value;
   const [phi1, phi2] = told ? [told.setpoint[0] * 1e-4, told.setpoint[1] * 1e-4] : [0, 0];
+  const there = comparison.value.is === "other" ? robotGait.value : null;
+  const differs = comparison.value.is === "other";
   return (
     <>
       <figure class="map" aria-label="Joints of the robot on the height map">
+        <figcaption class="soft" id="legend">
+          <LegendLine dashed={differs} /> {LEGEND[comparison.value.is]}
+          {differs && (there ? <> · <LegendLine /> the robot’s gait</> : " · the robot’s gait came from elsewhere and is not drawn")}
+        </figcaption>
         <div class="plane">
           <Heights />
           <svg viewBox={`${-d} ${-d} ${2 * d} ${2 * d}`} role="img" aria-label="The joints’ set-point over the gait">
             {curves.value?.zero_curves.map(({ points, closed }, k) => <path key={k} class="zero" d={line(points, closed)} />)}
-            <path class="gait first" d={line(curveOf(activeGait(shown.value)), true)} />
+            {there && <path id="gait-there" class="gait first" d={line(typeof there === "string" ? curveOfText(there) : pairs(there), true)} />}
+            <path id="gait-shown" class={`gait first ${differs ? "not-there" : ""}`} d={line(curveOf(activeGait(shown.value)), true)} />
             {told && <circle id="setpoint" class="joints" cx={phi1} cy={-phi2} r={d * 0.025} />}
           </svg>
         </div>
@@ -27,6 +36,17 @@ export function Follow() {
       <Way />
     </>
   );
+}
+
+const LEGEND = {
+  unknown: "gait shown",
+  none: "gait shown; the robot holds none",
+  same: "gait shown, and on the robot",
+  other: "gait shown, not on the robot",
+};
+
+function LegendLine({ dashed = false }: { dashed?: boolean }) {
+  return <svg class="legend-line" viewBox="0 0 24 8" aria-hidden="true"><path class={`gait first ${dashed ? "not-there" : ""}`} d="M0 4h24" /></svg>;
 }
 
 function Heights() {

@@ -19,7 +19,9 @@ export const held = signal<Held | null>(null);
 export const health = signal<Health | null>(null);
 export const stands = signal<Stands | null>(null);
 export const progress = signal<{ done: number; total: number } | null>(null);
-export const foretold = signal<{ told: Foretold | null; reason: string } | null>(null);
+export const foretold = signal<{ of: number; told: Foretold | null; reason: string } | null>(null);
+/** Gaits that this page has sent, by the checksum of their tables: what the robot plays can be drawn only if it is among them. */
+export const sent = signal<ReadonlyMap<number, string | number[]>>(new Map());
 /** What was done last, or why not. */
 export const said = signal<{ text: string; failed: boolean }>({ text: "", failed: false });
 /** What is under way. */
@@ -74,6 +76,7 @@ function hear(news: News): void {
       link.value = news;
       if (news.state !== "open") busy.value = "";
       if (news.state === "closed") wheel.value = telemetry.value = hello.value = held.value = stands.value = null;
+      if (news.state !== "open") table.value = null;
       break;
     case "events":
       for (const event of news.events) if (event.event === "telemetry") take(event.telemetry);
@@ -93,6 +96,15 @@ function hear(news: News): void {
     case "held":
       held.value = news.held;
       break;
+    case "uploaded": {
+      table.value = news.table;
+      const gait = uploads.get(news.of);
+      if (gait) sent.value = new Map([...sent.peek(), [news.table.crc32, gait]]);
+      break;
+    }
+    case "alive?":
+      order({ do: "alive" });
+      break;
     case "progress":
       progress.value = news;
       break;
@@ -109,14 +121,14 @@ function hear(news: News): void {
       said.value = { text: "Another page has asked the robot to stop.", failed: false };
       break;
     case "foretold":
-      foretold.value = { told: news.foretold, reason: news.reason };
+      foretold.value = { of: news.of, told: news.foretold, reason: news.reason };
       break;
     case "log":
       download("link.mcap", news.bytes, "application/octet-stream");
   }
 }
 
-const done = (what: string) => (what === UPLOADING ? "The gait is on the robot." : `The robot has acknowledged: ${what}.`);
+const done = (what: string) => (what === UPLOADING ? "Uploaded." : `The robot has acknowledged: ${what}.`);
 
 function take(told: Telemetry): void {
   const before = telemetry.peek();
@@ -148,7 +160,7 @@ export const takeWheel = () => order({ do: "drive" });
 export const leaveWheel = () => order({ do: "watch" });
 export const downloadLog = () => order({ do: "log" });
 export const cancelUpload = () => order({ do: "cancel upload" });
-export const foretell = (question: object) => order({ do: "preflight", question });
+export const foretell = (question: object, of: number) => order({ do: "preflight", question, of });
 
 /** Stops never wait: not for an answer, not for a dialog, not for what is under way. */
 export const stop = () => order({ do: "stop" });
@@ -163,10 +175,15 @@ export function request(request: Request, what: string): void {
   order({ do: "request", request, what });
 }
 
+let lastUpload = 0;
+const uploads = new Map<number, string | number[]>();
 export function upload(gait: string | number[]): void {
   busy.value = UPLOADING;
   progress.value = { done: 0, total: 1 };
-  order({ do: "upload", gait });
+  lastUpload += 1;
+  uploads.clear();
+  uploads.set(lastUpload, gait);
+  order({ do: "upload", gait, of: lastUpload });
 }
 
 /** What `swimmer lab --port` put into the address: kept for this tab, and taken out of the address, which may be shared. */
@@ -195,7 +212,7 @@ function remembered(): string | null {
   }
 }
 
-/** While pulses may be on the space bar is the e-stop, wherever the focus is, in every room of the page. */
+/** While pulses may be on the space bar is the e-stop, wherever the focus is, in every tab of the page. */
 window.addEventListener(
   "keydown",
   (event) => {

@@ -1,10 +1,11 @@
-// What the robot told last; grey where that is old.
+// The robot's last telemetry; grey if it is old. The state itself is in the bar of every tab.
 
 import { figure } from "../explore/names.ts";
+import { inHex } from "./gait.ts";
 import { downloadLog, health, hello, link, stale, table, telemetry } from "./robot.ts";
 import type { Hello, StateName } from "./words.ts";
 
-const STATES: Record<StateName, string> = {
+export const STATES: Record<StateName, string> = {
   Stopped: "Stopped: pulses are off",
   EStopped: "E-stopped: pulses are off, latched",
   Holding: "Holding: pulses are on",
@@ -36,7 +37,7 @@ export function Status() {
   const trip = health.value?.round_trip_s;
   return (
     <section class="card state" aria-label="State">
-      <h2 id="state" data-state={told.state} class={`state-${told.state}`} role="status">{STATES[told.state]}{stale.value ? " (old)" : ""}</h2>
+      <h2>Telemetry{stale.value ? " (old)" : ""}</h2>
       {flags.length > 0 && <p class="error">{flags.join(" · ")}</p>}
       <table class="readout">
         <tbody>
@@ -46,7 +47,7 @@ export function Status() {
           <Row name="predicted pose">{figure(told.pose.x * 1000, 1)}, {figure(told.pose.y * 1000, 1)} mm, {figure((told.pose.theta * 180) / Math.PI, 1)}°</Row>
           <Row name="battery">{told.battery_mv === null ? "not measured" : `${figure(told.battery_mv / 1000, 2)} V`}</Row>
           <Row name="link">{trip == null ? "–" : `${figure(trip * 1000, 1)} ms round trip`}{health.value ? `, ${health.value.counters.retransmissions} repeats` : ""}</Row>
-          <Row name="gait there">{table.value ? `${table.value.knots} knots, at least ${figure(table.value.min_period_us * 1e-6, 2)} s` : "none"}</Row>
+          <Row name="gait there">{table.value ? `CRC ${inHex(table.value.crc32)}, ${table.value.knots} knots, at least ${figure(table.value.min_period_us * 1e-6, 2)} s` : "none"}</Row>
           <Row name="robot">{hello.value ? `${hello.value.board}, firmware ${version(hello.value)}` : "another page’s"}</Row>
         </tbody>
       </table>

@@ -17,9 +17,12 @@ export interface Ear {
 }
 
 export interface Wire {
+  /** Bytes that a full wire does not take are lost, as on any link: nothing waits here without bound. */
   send(bytes: Uint8Array): void;
+  /** A stop: it overtakes all bytes that wait here. */
+  sendStop(bytes: Uint8Array): void;
   /** In words, where the wire has somebody who listens to them. */
-  say(word: "drive" | "watch" | "stop" | "estop"): void;
+  say(word: "drive" | "watch" | "stop" | "estop" | "here"): void;
   close(): void;
 }
 
@@ -75,6 +78,10 @@ class TwinWire implements Wire {
     this.#waiting.push(bytes);
   }
 
+  sendStop(bytes: Uint8Array): void {
+    this.#waiting = [bytes];
+  }
+
   say(): void {}
 
   close(): void {
@@ -100,6 +107,8 @@ export function stepOf(number: number, now: number, pieces: readonly Uint8Array[
 
 /** The WebSocket of `swimmer lab --port`. */
 class SocketWire implements Wire {
+  /** Bytes that may wait in the browser. */
+  static readonly MOST_WAITING = 4096;
   #socket: WebSocket | undefined;
   #closed = false;
   #timer: ReturnType<typeof setTimeout> | undefined;
@@ -134,6 +143,11 @@ class SocketWire implements Wire {
   }
 
   send(bytes: Uint8Array<ArrayBuffer>): void {
+    if (this.#socket?.readyState === WebSocket.OPEN && this.#socket.bufferedAmount < SocketWire.MOST_WAITING) this.#socket.send(bytes);
+  }
+
+  /** The server looks for stops among the frames and lets them overtake. */
+  sendStop(bytes: Uint8Array<ArrayBuffer>): void {
     if (this.#socket?.readyState === WebSocket.OPEN) this.#socket.send(bytes);
   }
 
@@ -176,6 +190,9 @@ class SerialWire implements Wire {
   #closed = false;
   #writer: WritableStreamDefaultWriter<Uint8Array> | undefined;
   #reader: ReadableStreamDefaultReader<Uint8Array> | undefined;
+  #port: SerialPort | undefined;
+  /** What the writer takes when nothing waits. */
+  #idle: number | null = null;
   #told = "";
 
   constructor(
@@ -204,7 +221,9 @@ class SerialWire implements Wire {
   async #carry(port: SerialPort): Promise<void> {
     await port.open({ baudRate: this.baud, bufferSize: 4096 });
     try {
+      this.#port = port;
       this.#writer = port.writable?.getWriter();
+      this.#idle = this.#writer?.desiredSize ?? null;
       this.#reader = port.readable?.getReader();
       this.#told = "";
       this.ear.up("the serial port", this.baud / BITS_OF_A_BYTE);
@@ -216,14 +235,32 @@ class SerialWire implements Wire {
     } finally {
       this.#writer?.releaseLock();
       this.#reader?.releaseLock();
-      this.#writer = this.#reader = undefined;
+      this.#writer = this.#reader = this.#port = undefined;
       await port.close().catch(() => undefined);
     }
   }
 
   send(bytes: Uint8Array): void {
-    // What a broken port does not take is lost, as on any link; the reader's end tells of it.
+    if ((this.#writer?.desiredSize ?? 0) <= 0) return;
+    // What a broken port does not take is lost too; the reader's end tells of it.
     this.#writer?.write(bytes).catch(() => undefined);
+  }
+
+  sendStop(bytes: Uint8Array): void {
+    const writer = this.#writer;
+    if (!writer) return;
+    if (writer.desiredSize === this.#idle) return void writer.write(bytes).catch(() => undefined);
+    // Bytes that wait in the browser are discarded, and the stream with them; the port has another one.
+    this.#writer = undefined;
+    void writer
+      .abort()
+      .catch(() => undefined)
+      .then(() => {
+        writer.releaseLock();
+        this.#writer = this.#port?.writable?.getWriter();
+        return this.#writer?.write(bytes);
+      })
+      .catch(() => undefined);
   }
 
   say(): void {}

@@ -68,14 +68,16 @@ export type Order =
   | { do: "open"; wire: WireAsked; key: string | null }
   | { do: "close" }
   | { do: "request"; request: Request; what: string }
-  | { do: "upload"; gait: string | number[] }
+  | { do: "upload"; gait: string | number[]; of: number }
   | { do: "cancel upload" }
   | { do: "stop" }
   | { do: "estop" }
   | { do: "drive" }
   | { do: "watch" }
-  | { do: "preflight"; question: object }
-  | { do: "log" };
+  | { do: "preflight"; question: object; of: number }
+  | { do: "log" }
+  /** The page's main thread is alive. */
+  | { do: "alive" };
 
 /** How the link stands. */
 export type LinkState = "closed" | "opening" | "greeting" | "open" | "watching" | "gone";
@@ -99,6 +101,8 @@ export interface Stands {
 }
 
 export interface Foretold {
+  /** Checksum of the table that an upload of this gait sends. */
+  crc32: number;
   period_s: number;
   min_period_s: number;
   displacement_m: [number, number] | null;
@@ -118,10 +122,14 @@ export type News =
   | { told: "hello"; hello: Hello; configuration: object | null }
   | { told: "table"; table: TableInfo | null }
   | { told: "held"; held: Held }
+  /** The gait of the upload `of` is the robot's table. */
+  | { told: "uploaded"; of: number; table: TableInfo }
   | { told: "progress"; done: number; total: number }
   | { told: "health"; health: Health }
   | { told: "stands"; stands: Stands }
   | { told: "wheel"; yours: boolean; free: boolean }
   | { told: "stopped by another" }
-  | { told: "foretold"; foretold: Foretold | null; reason: string }
+  | { told: "foretold"; of: number; foretold: Foretold | null; reason: string }
+  /** The worker looks whether the main thread is alive. */
+  | { told: "alive?" }
   | { told: "log"; bytes: ArrayBuffer };

@@ -9,6 +9,12 @@ import type { Event, Foretold, Health, News, Order, Reply, Request, Status } fro
 const BEAT = 20;
 /** Between two looks at how the link does, ms. */
 const LOOK = 500;
+/** Between two signs of life to the server, ms. */
+const SIGN = 250;
+/** Between two looks at which gait the robot holds, in looks at the link: another program may have sent one. */
+const STATUS_EVERY = 4;
+/** A main thread that has not answered for so long hangs: the page then gives no signs of life either, ms. */
+const HANGS = 400;
 
 let module: Module;
 let wire: Wire | undefined;
@@ -19,6 +25,10 @@ let key: string | null = null;
 let timer: ReturnType<typeof setTimeout> | undefined;
 /** What each ticket is for. */
 const asked = new Map<number, string>();
+/** The page's number of the upload under way. */
+let uploading = 0;
+let looks = 0;
+let alive = performance.now();
 
 const now = () => performance.now() / 1000;
 const tell = (news: News, transfer: Transferable[] = []) => self.postMessage(news, { transfer });
@@ -34,11 +44,16 @@ const reasonOf = (error: unknown) => (error instanceof Error ? error.message : S
 const GREETING = "connecting";
 const CONFIGURATION = "reading the configuration";
 const STATUS = "reading which gait and settings the robot holds";
+const UPLOADING = "uploading the gait";
 
 const ears: Ear = {
   up(name, bytesPerSecond) {
     wireName = name;
-    openSession(bytesPerSecond);
+    try {
+      openSession(bytesPerSecond);
+    } catch (error) {
+      tell({ told: "link", state: "gone", name: wireName, reason: reasonOf(error) });
+    }
   },
   bytes(bytes) {
     if (session !== undefined) step(bytes);
@@ -82,7 +97,7 @@ function closeSession(): void {
   clearTimeout(timer);
   if (session !== undefined) json("session close", { number: session });
   if (ear !== undefined) json("overhear close", { number: ear });
-  session = ear = undefined;
+  session = ear = hello = undefined;
   asked.clear();
 }
 
@@ -90,7 +105,7 @@ function greet(): void {
   ask("session connect", {}, GREETING);
 }
 
-function ask(name: string, question: object, what: string): void {
+function ask(name: string, question: object, what: string, stops = false): void {
   if (session === undefined) {
     tell({ told: "done", what, reason: `${what}: no robot is connected` });
     return;
@@ -101,19 +116,20 @@ function ask(name: string, question: object, what: string): void {
   } catch (error) {
     tell({ told: "done", what, reason: reasonOf(error) });
   }
-  step(new Uint8Array());
+  step(new Uint8Array(), stops);
 }
 
-const request = (request: Request, what: string) => ask("session request", { request }, what);
+const request = (request: Request, what: string, stops = false) => ask("session request", { request }, what, stops);
 
 /** Bytes in, bytes out, what happened, and when to look again. */
-function step(received: Uint8Array): void {
+function step(received: Uint8Array, stops = false): void {
   if (session === undefined) return;
   const answer = module.call("session step", stepOf(session, now(), [received]));
   if (!("bytes" in answer)) return;
   const { bytes } = answer;
   const count = new DataView(bytes.buffer).getUint32(0, true);
-  if (count > 0) wire?.send(bytes.slice(4, 4 + count));
+  if (count > 0 && stops) wire?.sendStop(bytes.slice(4, 4 + count));
+  else if (count > 0) wire?.send(bytes.slice(4, 4 + count));
   const told = JSON.parse(new TextDecoder().decode(bytes.subarray(4 + count))) as { events: Event[]; next_s: number | null };
   clearTimeout(timer);
   const wait = told.next_s === null ? BEAT : Math.max(0, told.next_s - now()) * 1000;
@@ -141,7 +157,7 @@ function hear(event: Event): void {
       // A robot that is switched on later is met then.
       timer = setTimeout(greet, LOOK);
     } else {
-      tell({ told: "done", what, reason: event.reason });
+      if (what !== STATUS) tell({ told: "done", what, reason: event.reason });
       // Another e-stop may have come, or other settings: what the next request names is read anew.
       if (what !== STATUS) request("Status", STATUS);
     }
@@ -155,18 +171,18 @@ function hear(event: Event): void {
     request("Status", STATUS);
     return;
   }
-  if (event.event === "uploaded") tell({ told: "table", table: event.table });
+  if (event.event === "uploaded") tell({ told: "uploaded", of: uploading, table: event.table });
   if (event.event === "answered") answered(event.reply);
   if (what !== CONFIGURATION && what !== STATUS) tell({ told: "done", what, reason: null });
 }
 
 /** State of the robot by its last telemetry. */
 let state = "";
-let hello: (Event & { event: "connected" })["hello"];
+let hello: (Event & { event: "connected" })["hello"] | undefined;
 
 function answered(reply: Reply): void {
   if (typeof reply !== "object") return;
-  if ("Configuration" in reply) tell({ told: "hello", hello, configuration: reply.Configuration as object });
+  if ("Configuration" in reply && hello) tell({ told: "hello", hello, configuration: reply.Configuration as object });
   if ("Status" in reply) {
     const { table, settings_crc32, estops } = reply.Status as Status;
     tell({ told: "table", table });
@@ -181,7 +197,17 @@ function overhear(bytes: Uint8Array): void {
 }
 
 setInterval(() => {
-  if (session !== undefined) tell({ told: "health", health: json<Health>("session link", { number: session }) });
+  if (performance.now() - alive < HANGS) wire?.say("here");
+  // A message is answered in a hidden page too, where timers tick seldom.
+  tell({ told: "alive?" });
+}, SIGN);
+
+setInterval(() => {
+  if (session === undefined) return;
+  tell({ told: "health", health: json<Health>("session link", { number: session }) });
+  looks += 1;
+  const isAsked = [...asked.values()].some((what) => what === STATUS || what === GREETING || what === UPLOADING);
+  if (hello && looks % STATUS_EVERY === 0 && !isAsked) request("Status", STATUS);
 }, LOOK);
 
 function perform(order: Order): void {
@@ -200,7 +226,7 @@ function perform(order: Order): void {
     case "estop":
       // Who watches has somebody else say it.
       if (session === undefined) wire?.say(order.do);
-      else request(order.do === "stop" ? "Stop" : "EStop", order.do === "stop" ? "stop" : "e-stop");
+      else request(order.do === "stop" ? "Stop" : "EStop", order.do === "stop" ? "stop" : "e-stop", true);
       return;
     case "drive":
     case "watch":
@@ -210,17 +236,21 @@ function perform(order: Order): void {
       request(order.request, order.what);
       return;
     case "upload":
-      ask("session upload", { gait: order.gait }, "uploading the gait");
+      uploading = order.of;
+      ask("session upload", { gait: order.gait }, UPLOADING);
       return;
     case "cancel upload":
       if (session !== undefined) json("session cancel upload", { number: session, now_s: now() });
       return;
     case "preflight":
       try {
-        tell({ told: "foretold", foretold: json<Foretold>("preflight", order.question), reason: "" });
+        tell({ told: "foretold", of: order.of, foretold: json<Foretold>("preflight", order.question), reason: "" });
       } catch (error) {
-        tell({ told: "foretold", foretold: null, reason: reasonOf(error) });
+        tell({ told: "foretold", of: order.of, foretold: null, reason: reasonOf(error) });
       }
+      return;
+    case "alive":
+      alive = performance.now();
       return;
     case "log": {
       if (session === undefined) return;

@@ -1,19 +1,15 @@
 // The frame of the page: a rail of rooms, the room itself, and what the page was built from.
 
-import { signal } from "@preact/signals";
+import { computed } from "@preact/signals";
 import { useEffect } from "preact/hooks";
+import { EStop, RobotBar } from "../drive/bar.tsx";
+import { link } from "../drive/robot.ts";
+import { opened, openRoom } from "./open.ts";
 import { ROOMS } from "./rooms.tsx";
-import { fragment, setFragment } from "./fragment.ts";
 import { ThemeToggle } from "./theme.tsx";
 
-const asked = fragment().get("room");
-const open = signal(ROOMS.find((room) => room.id === asked)?.id ?? ROOMS[0]?.id ?? "");
+const open = computed(() => ROOMS.find((room) => room.id === opened.value)?.id ?? ROOMS[0]?.id ?? "");
 const visited = new Set<string>();
-
-export function openRoom(id: string): void {
-  open.value = id;
-  setFragment("room", id);
-}
 
 export function App() {
   useEffect(() => {
@@ -55,12 +51,15 @@ export function App() {
         <span class="version" title="Page and module were built from this commit">
           {VERSION} · {HASH}
         </span>
+        <RobotBar />
       </header>
       {ROOMS.filter(({ id }) => visited.has(id)).map(({ id, Panel }) => (
         <main key={id} id={`room-${id}`} role="tabpanel" aria-labelledby={`tab-${id}`} hidden={open.value !== id}>
           <Panel />
         </main>
       ))}
+      {link.value.state !== "closed" && <div class="place-of-estop" />}
+      <EStop />
     </>
   );
 }

@@ -1,7 +1,7 @@
-//! What the robot will make of a gait, told before it is sent, as `swimmer robot upload` tells it.
+//! Forecast of a gait on the robot before it is sent, as `swimmer robot upload` prints it.
 
-use forecast::{Played, Servos, forecast};
-use link_protocol::{Configuration, HelloReply, MAX_KNOTS};
+use forecast::{Played, Servos, forecast, table};
+use link_protocol::{Configuration, HelloReply, MAX_KNOTS, crc32c};
 use serde::Deserialize;
 use serde_json::{Value, json};
 use twin::is_configured_as;
@@ -27,7 +27,7 @@ struct Connected {
     configuration: Configuration,
 }
 
-/// Foretells.
+/// Computes the forecast of a gait.
 pub(super) fn preflight(_lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let asked: Asked = parsed(bytes)?;
     let (file, model) = asked.swimmer.model()?;
@@ -44,7 +44,11 @@ pub(super) fn preflight(_lab: &mut Lab, bytes: &[u8]) -> Outcome {
         period: asked.period_s,
         knots: MAX_KNOTS,
     };
-    let told = forecast(&model, &asked.gait.read()?, &played).map_err(|why| why.to_string())?;
+    let gait = asked.gait.read()?;
+    let told = forecast(&model, &gait, &played).map_err(|why| why.to_string())?;
+    let crc32 = table(&gait, MAX_KNOTS)
+        .map(|table| crc32c(table.bytes()))
+        .map_err(|why| why.to_string())?;
     let played = told.ends().map(|(_, played)| *played);
     let losses: Vec<Value> = told
         .stages
@@ -52,6 +56,8 @@ pub(super) fn preflight(_lab: &mut Lab, bytes: &[u8]) -> Outcome {
         .map(|stage| json!({ "by": stage.stage.word(), "loss_share": told.share(stage.loss) }))
         .collect();
     json(&json!({
+        // Of the table that an upload sends: the robot names its own by the same.
+        "crc32": crc32,
         "period_s": asked.period_s,
         "min_period_s": told.verdict.min_period,
         "displacement_m": played.map(|played| [played.displacement.x, played.displacement.y]),

@@ -1,0 +1,42 @@
+// The connected robot in every tab: its state, and the e-stop.
+
+import { openRoom } from "../shell/open.ts";
+import { estop, link, stale, telemetry } from "./robot.ts";
+import { STATES } from "./status.tsx";
+
+/** State of the robot, in the head of the page. */
+export function RobotBar() {
+  if (link.value.state === "closed") return null;
+  const told = telemetry.value;
+  const plays = told && (told.state === "Playing" || told.state === "Paused" || told.state === "Starting");
+  return (
+    <div class={`robot-bar ${told ? `state-${told.state}` : ""} ${stale.value ? "old" : ""}`} aria-label="Robot">
+      <strong id="state" data-state={told?.state ?? ""} role="status">
+        {told ? STATES[told.state] : "Nothing heard of the robot yet"}
+        {told && stale.value ? " (old)" : ""}
+      </strong>
+      {plays && (
+        <span id="playing">
+          cycle {told.cycle + 1}
+          {told.cycles ? ` of ${told.cycles}` : ", until stopped"}, {Math.round((told.phase / 65536) * 100)} %
+        </span>
+      )}
+      {link.value.state !== "open" && <span>{LINK[link.value.state]}</span>}
+      <button class="small" onClick={() => openRoom("drive")}>Drive</button>
+    </div>
+  );
+}
+
+const LINK = { opening: "opening the link", greeting: "greeting", watching: "watching: another page drives", gone: "link lost" };
+
+/** It asks nothing and waits for nothing. */
+export function EStop() {
+  if (link.value.state === "closed") return null;
+  const latched = telemetry.value?.state === "EStopped";
+  return (
+    <button class="estop" id="estop" onClick={estop} aria-keyshortcuts="Space">
+      <strong>E-STOP</strong>
+      <span>{latched ? "latched: pulses are off" : "pulses off at once · space bar"}</span>
+    </button>
+  );
+}

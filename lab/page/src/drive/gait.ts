@@ -1,0 +1,49 @@
+// The gait that is shown and the one that the robot holds, held against each other by the checksums of their tables.
+
+import { computed, effect, signal } from "@preact/signals";
+import { activeGait, shown } from "../explore/document.ts";
+import { asked, swimmer } from "../explore/model.ts";
+import { configuration, foretell, foretold, hello, link, sent, table } from "./robot.ts";
+
+const question = computed(() => {
+  const gait = asked(activeGait(shown.value));
+  if (!gait || !swimmer.value || link.value.state !== "open") return null;
+  const robot = hello.value && configuration.value ? { hello: hello.value, configuration: configuration.value } : null;
+  return { swimmer: swimmer.value.toml, gait, period_s: shown.value.period, robot };
+});
+/** Number of the present question: an answer to an earlier one is not about the gait that is shown. */
+const number = signal(0);
+let pause: ReturnType<typeof setTimeout> | undefined;
+effect(() => {
+  const about = question.value;
+  const of = number.peek() + 1;
+  number.value = of;
+  clearTimeout(pause);
+  // A hand that drags is let come to rest.
+  if (about) pause = setTimeout(() => foretell(about, of), 150);
+});
+
+/** What the robot will make of the gait that is shown; null until that is known. */
+export const forecast = computed(() => (foretold.value?.of === number.value ? foretold.value : null));
+
+export type Comparison =
+  /** It is not known yet. */
+  | { is: "unknown" }
+  | { is: "none" }
+  | { is: "same"; crc32: number }
+  | { is: "other"; crc32: number; shown: number };
+
+/** Which gait the robot holds, against the one that is shown. */
+export const comparison = computed((): Comparison => {
+  if (link.value.state !== "open") return { is: "unknown" };
+  if (table.value === null) return { is: "none" };
+  const shownCrc = forecast.value?.told?.crc32;
+  if (shownCrc === undefined) return { is: "unknown" };
+  const { crc32 } = table.value;
+  return crc32 === shownCrc ? { is: "same", crc32 } : { is: "other", crc32, shown: shownCrc };
+});
+
+/** The gait that the robot holds, if this page has sent it. */
+export const robotGait = computed(() => (table.value ? (sent.value.get(table.value.crc32) ?? null) : null));
+
+export const inHex = (crc32: number) => crc32.toString(16).padStart(8, "0");
