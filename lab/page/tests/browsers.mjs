@@ -14,6 +14,11 @@ export const BROWSERS = {
 /** Milliseconds that anything may take; the machines of CI are slow and shared. */
 const PATIENCE = 60_000;
 
+/** Firefox ESR has no command for the screen's orientation, which comes after the size has been set. */
+function unlessOrientation(error) {
+  if (!String(error).includes("setScreenOrientationOverride")) throw error;
+}
+
 /** One tab with the page in it. What the console says is kept: a page has nothing to say there. */
 export class Tab {
   constructor(page, said) {
@@ -26,7 +31,7 @@ export class Tab {
     const page = isPlaywright
       ? await browser.newPage({ viewport: { width, height }, colorScheme: dark ? "dark" : "light" })
       : await browser.newPage();
-    if (!isPlaywright) await page.setViewport({ width, height });
+    if (!isPlaywright) await page.setViewport({ width, height }).catch(unlessOrientation);
     const said = [];
     page.on("console", (message) => said.push(message.text()));
     page.on("pageerror", (error) => said.push(String(error)));

@@ -1,6 +1,6 @@
 // The connected robot in every tab: its state, and the e-stop.
 
-import { openRoom } from "../shell/open.ts";
+import { opened, openRoom } from "../shell/open.ts";
 import { estop, link, stale, telemetry } from "./robot.ts";
 import { STATES } from "./status.tsx";
 
@@ -22,7 +22,7 @@ export function RobotBar() {
         </span>
       )}
       {link.value.state !== "open" && <span>{LINK[link.value.state]}</span>}
-      <button class="small" onClick={() => openRoom("drive")}>Drive</button>
+      {opened.value !== "drive" && <button class="small" onClick={() => openRoom("drive")}>To Drive</button>}
     </div>
   );
 }

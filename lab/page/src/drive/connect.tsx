@@ -83,13 +83,13 @@ function take(name: string, text: string): void {
 function KeyField() {
   if (key.value) {
     return (
-      <p class="key" id="key">
+      <p class="robot-key" id="key">
         <span>Key: {key.value.name}</span> <button class="small" onClick={() => (key.value = null)}>Remove</button>
       </p>
     );
   }
   return (
-    <div class="key" id="key">
+    <div class="robot-key" id="key">
       <span class="soft">Key, only for a robot that has one:</span>
       <OpenButton id="key-file" name="Choose file…" accept="" open={([file]) => file && void file.text().then((text) => take(file.name, text))} />
       <input
