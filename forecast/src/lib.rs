@@ -41,7 +41,9 @@ pub mod tank;
 pub mod timing;
 
 pub use fluid::{Demand, demand};
-pub use losses::{Forecast, ForecastError, Loss, Played, Servos, Stage, Verdict, forecast};
+pub use losses::{
+    Forecast, ForecastError, Loss, Played, Servos, Stage, Verdict, forecast, thickness,
+};
 pub use net_motion::NetMotion;
 pub use plan::{Errand, Family, Kind, Member, Plan, PlanError, Scaled, Step, plan};
 pub use playlist::{PlaylistTable, Repeated};

@@ -14,7 +14,7 @@ mod stages;
 use gait_player::table::TableError;
 use nalgebra::Vector2;
 use swimmer_files::{ServoFile, UnplayablePeriod, check_playable_period};
-use swimmer_model::{Gait, InvalidSamples, Model, Tolerance};
+use swimmer_model::{Gait, InvalidSamples, Model, Swimmer, Tolerance};
 
 use crate::path::Polyline;
 use crate::reach::{Reach, reach};
@@ -169,6 +169,20 @@ pub struct Forecast {
 /// Thickness of the robot's plates \[m\], where the swimmer's drag does not tell a half thickness.
 const PLATE: f64 = 0.005;
 
+/// Thickness of a swimmer's plates \[m\]: centre lines that come closer mean plates that touch.
+///
+/// ```
+/// use swimmer_model::Swimmer;
+///
+/// assert_eq!(forecast::thickness(&Swimmer::robot()), 0.005);
+/// ```
+pub fn thickness(swimmer: &Swimmer<f64>) -> f64 {
+    match swimmer.tangential_drag {
+        swimmer_model::TangentialDrag::HalfThickness(half) => 2.0 * half,
+        _ => PLATE,
+    }
+}
+
 /// Foretells a cycle of a gait, played over and over, in its second cycle: the servos have forgotten where they came from.
 ///
 /// # Errors
@@ -217,10 +231,7 @@ pub fn forecast<G: Gait<f64> + ?Sized>(
         gap: Gap::along(&links, &way),
         way,
         designed_gap: Gap::of_gait(&links, gait),
-        thickness: match model.swimmer().tangential_drag {
-            swimmer_model::TangentialDrag::HalfThickness(half) => 2.0 * half,
-            _ => PLATE,
-        },
+        thickness: thickness(model.swimmer()),
         margin: gap::margin(&links),
         verdict: verdict(&ways.table, &links, &played.servos, played.period_us()),
     })
