@@ -27,6 +27,11 @@ struct Balance<T> {
     a: [Vector3<T>; 2],
 }
 
+/// A sphere's rotational drag over the viscosity, 8π r³.
+fn sphere_turning<T: Scalar>(radius: T) -> T {
+    T::from_f64(8.0 * core::f64::consts::PI) * radius * radius * radius
+}
+
 impl<T: Scalar> Model<T> {
     /// Prepares the resistance coefficients.
     ///
@@ -40,11 +45,10 @@ impl<T: Scalar> Model<T> {
         let tangential = drag(l0) * l0;
         let normal = chi * tangential;
         let sphere = T::from_f64(6.0 * core::f64::consts::PI) * radius;
-        let sphere_turning = T::from_f64(8.0 * core::f64::consts::PI) * radius * radius * radius;
         let middle = Symmetric3::diagonal(
             tangential + sphere,
             normal + sphere,
-            normal * l0 * l0 / T::from_f64(12.0) + sphere_turning,
+            normal * l0 * l0 / T::from_f64(12.0) + sphere_turning(radius),
         );
         let side = |length, mirror| SideLink::new(drag(length), chi, length, l0, mirror);
         Ok(Self {
@@ -52,6 +56,29 @@ impl<T: Scalar> Model<T> {
             middle,
             sides: [side(links.front, T::one()), side(links.back, -T::one())],
         })
+    }
+
+    /// The same with the float's rotational drag multiplied: a float that is no sphere drags against turning otherwise than its
+    /// drag against translation says.
+    ///
+    /// ```
+    /// use nalgebra::Vector2;
+    /// use swimmer_model::{Model, Swimmer};
+    ///
+    /// let sphere = Model::new(&Swimmer::<f64>::robot())?;
+    /// let phi = Vector2::new(0.5, -0.3);
+    /// // What hardly turns hardly swings its front link.
+    /// let heavy = sphere.with_turning_drag(1e6);
+    /// assert!(heavy.local_connection(&phi)[(2, 0)].abs() < 1e-3);
+    /// assert_eq!(sphere.with_turning_drag(1.0).local_connection(&phi), sphere.local_connection(&phi));
+    /// # Ok::<(), swimmer_model::InvalidSwimmer>(())
+    /// ```
+    #[must_use]
+    pub fn with_turning_drag(&self, factor: T) -> Self {
+        let turning = sphere_turning(self.swimmer.sphere_radius) * (factor - T::one());
+        let mut out = *self;
+        out.middle.zz = out.middle.zz + turning;
+        out
     }
 
     /// The swimmer that this model was made from.
