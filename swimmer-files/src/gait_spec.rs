@@ -132,6 +132,16 @@ fn size(text: &str, amplitude: &str) -> Result<f64, GaitSpecError> {
     }
 }
 
+impl GaitSpec {
+    /// Whether `:cw` was added.
+    pub fn is_reversed(&self) -> bool {
+        match self {
+            Self::Circle { clockwise, .. } | Self::Square { clockwise, .. } => *clockwise,
+            Self::File { reversed, .. } => *reversed,
+        }
+    }
+}
+
 impl fmt::Display for GaitSpec {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let reversed = match self {

@@ -67,6 +67,14 @@ pub struct Known {
     pub c_t: Option<KnownValue>,
     /// `period`: over `period_s`.
     pub period: Option<KnownValue>,
+    /// `links_mm`: how much longer each link is than the swimmer file says \[m\].
+    pub links: Option<KnownValue>,
+    /// `float_turning`: the float's rotational drag over that of a sphere of the same drag against translation.
+    pub float_turning: Option<KnownValue>,
+    /// `camera_stretch`: lengths along the cameras' x over those along y, as their square root: tilt, pixels that are not square.
+    pub camera_stretch: Option<KnownValue>,
+    /// `lens_distortion`: stretch of lengths at the runs' mean distance from their centre over that at their centre.
+    pub lens_distortion: Option<KnownValue>,
 }
 
 #[derive(Default, Deserialize)]
@@ -80,6 +88,10 @@ pub(super) struct RawKnown {
     dead_band_deg: Option<Spanned<String>>,
     c_t: Option<Spanned<String>>,
     period: Option<Spanned<String>>,
+    links_mm: Option<Spanned<String>>,
+    float_turning: Option<Spanned<String>>,
+    camera_stretch: Option<Spanned<String>>,
+    lens_distortion: Option<Spanned<String>>,
 }
 
 pub(super) fn known(
@@ -113,6 +125,10 @@ pub(super) fn known(
         dead_band: read(raw.dead_band_deg, "dead_band_deg", degree)?,
         c_t: ratio(raw.c_t, "c_t")?,
         period: ratio(raw.period, "period")?,
+        links: read(raw.links_mm, "links_mm", millimetre)?,
+        float_turning: ratio(raw.float_turning, "float_turning")?,
+        camera_stretch: ratio(raw.camera_stretch, "camera_stretch")?,
+        lens_distortion: ratio(raw.lens_distortion, "lens_distortion")?,
     })
 }
 
