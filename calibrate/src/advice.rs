@@ -1,25 +1,28 @@
-//! What to measure next? Each gait that the servos can play is added in thought to the runs there are: what it would say about
-//! r_s and χ follows from the model's derivatives and the errors that the other runs had, and with it how much narrower the
-//! intervals would become (Fisher's information).
+//! Optimal design of the next run: each gait that the robot plays with clearance is added to the runs there are. Its information on
+//! r_s, χ and the systematic errors follows from the model's derivatives and the errors that the other runs had, and with it by
+//! how much the recommended intervals would become narrower (Fisher's information).
 
-use nalgebra::{DMatrix, Matrix2, Vector2};
+use gait_player::Limits;
+use gait_player::clearance::clearance;
+use gait_player::table::check::Checker;
+use nalgebra::DMatrix;
 use serde::{Serialize, Serializer};
-use swimmer_files::{AnyGait, Campaign, GaitSpec};
-use swimmer_model::{Gait as _, Model, Swimmer};
+use swimmer_files::{AnyGait, Campaign, GaitSpec, ServoFile};
+use swimmer_model::{Gait as _, Links, Swimmer};
 
+use crate::assessment::recommended;
 use crate::error::FitError;
 use crate::fit::CampaignFit;
 use crate::fit::likelihood::Estimate;
-use crate::fit::parameter::Parameter;
 use crate::least_squares::Model as _;
-use crate::prediction::Played;
+use crate::prediction::{KNOTS, Played};
 use crate::quantities::QUANTITIES;
 
 /// Amplitudes of circles and squares that are weighed \[deg\].
 const AMPLITUDES: std::ops::RangeInclusive<u32> = 4..=22;
 const STEP_DEG: u32 = 5;
-/// Points of a gait at which the links are looked at.
-const POINTS: usize = 360;
+/// Shapes of a gait at which the distance of its side links is evaluated.
+const LOOKS: usize = 4096;
 
 /// One gait that could be measured next. Serialised with the keys of `swimmer calibrate --json`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -27,7 +30,7 @@ pub struct Candidate {
     /// The gait.
     #[serde(serialize_with = "readable")]
     pub gait: GaitSpec,
-    /// Width of the interval of r_s with one run of it more, over the width now.
+    /// Width of the recommended interval of r_s with one run of it more, over the width now.
     #[serde(rename = "sphere_radius_width")]
     pub sphere_radius: f64,
     /// The same of χ.
@@ -41,7 +44,7 @@ fn readable<S: Serializer>(gait: &GaitSpec, serializer: S) -> Result<S::Ok, S::E
     serializer.serialize_str(&gait.readable())
 }
 
-/// Gaits by how much one run of each would narrow the intervals. Serialised with the keys of `swimmer calibrate --json`.
+/// Gaits by how much one run of each would narrow the recommended intervals. Serialised with the keys of `swimmer calibrate --json`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Advice {
     /// One cycle \[s\], as most runs had it.
@@ -50,7 +53,8 @@ pub struct Advice {
     pub candidates: Vec<Candidate>,
 }
 
-/// Ranks circles and squares of 20° to 110°, as far as the servos reach and the links do not meet, and the campaign's own gaits.
+/// Ranks circles and squares of 20° to 110° and the campaign's own gaits, as far as the robot's own check lets them play: within the
+/// servos' angles and rates, and with its margin between the side links.
 ///
 /// # Errors
 /// [`FitError`]: the runs do not determine r_s and χ.
@@ -58,13 +62,16 @@ pub fn advise(campaign: &Campaign, found: &CampaignFit) -> Result<Advice, FitErr
     let undetermined = || FitError::Undetermined {
         parameters: "r_s, chi".to_owned(),
     };
-    let values = found.values()?;
-    let model = found.model(&values, vec![Parameter::SphereRadius, Parameter::Chi])?;
-    let estimate = Estimate::of(&model, &values, &found.optimum()).ok_or_else(undetermined)?;
+    let (model, estimate) = recommended(found)?;
     let known = Known::of(&estimate).ok_or_else(undetermined)?;
     let period_s = found.usual_period_s();
     let weigh = |gait: GaitSpec, shape: &AnyGait| -> Option<Candidate> {
-        if crosses(&found.swimmer.swimmer, shape) {
+        if !plays(
+            &found.start.swimmer,
+            campaign.swimmer.servo,
+            shape,
+            period_s,
+        ) {
             return None;
         }
         let played = Played::commanded(shape, campaign.swimmer.servo.as_ref(), period_s);
@@ -112,16 +119,40 @@ pub fn advise(campaign: &Campaign, found: &CampaignFit) -> Result<Advice, FitErr
     })
 }
 
-/// Whether side links would meet.
-fn crosses(swimmer: &Swimmer<f64>, gait: &AnyGait) -> bool {
-    let points = (0..POINTS).map(|i| gait.at(i as f64 / POINTS as f64).phi);
-    Model::new(swimmer).is_ok_and(|model| points.into_iter().any(|phi| model.links_cross(&phi)))
+/// Whether the robot's check of its table lets it play a gait. Servos that no file names are the robot's own.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // bounded: a period of hours, lengths of metres
+fn plays(swimmer: &Swimmer<f64>, servo: Option<ServoFile>, gait: &AnyGait, period_s: f64) -> bool {
+    let Ok(table) = forecast::table(gait, KNOTS) else {
+        return false;
+    };
+    let links = Links {
+        middle: swimmer.links.middle as f32,
+        front: swimmer.links.front as f32,
+        back: swimmer.links.back as f32,
+    };
+    let limits = servo.map_or(Limits::ROBOT, |servo| Limits {
+        max_angle: servo.max_angle as f32,
+        max_rate: servo.max_rate as f32,
+        ..Limits::ROBOT
+    });
+    // The plates must not touch at any shape of the gait, corners included.
+    let thickness = forecast::thickness(swimmer);
+    let mut shapes = (0..LOOKS).map(|i| gait.at(i as f64 / LOOKS as f64).phi);
+    if shapes.any(|phi| f64::from(clearance(&links, [phi.x as f32, phi.y as f32])) < thickness) {
+        return false;
+    }
+    let facts = Checker::new().advance(&table, &links, u32::MAX);
+    let period_us = (period_s * 1e6).clamp(0.0, 4e9) as u32;
+    facts.is_some_and(|facts| {
+        let allowed = facts.allow(&limits);
+        allowed.is_ok() && facts.allow_period(&limits, period_us).is_ok()
+    })
 }
 
-/// What the runs so far say.
+/// The information of the runs so far, and of what is known beforehand.
 struct Known {
-    information: Matrix2<f64>,
-    covariance: Matrix2<f64>,
+    information: DMatrix<f64>,
+    covariance: DMatrix<f64>,
     /// Variances of X, ΔY, Δθ of a run like the others.
     variances: [f64; QUANTITIES],
 }
@@ -130,7 +161,7 @@ impl Known {
     fn of(estimate: &Estimate) -> Option<Self> {
         let jacobian = &estimate.jacobian;
         let rows = jacobian.nrows();
-        let mut information = Matrix2::zeros();
+        let mut information = DMatrix::zeros(jacobian.ncols(), jacobian.ncols());
         let mut variances = [0.0; QUANTITIES];
         let mut counts = [0.0; QUANTITIES];
         for row in 0..rows {
@@ -139,10 +170,11 @@ impl Known {
             }
             let variance = estimate.components.variance(row);
             let gradient = jacobian.row(row);
-            let gradient = Vector2::new(gradient[0], gradient[1]);
-            information += gradient * gradient.transpose() / variance;
-            variances[row % QUANTITIES] += variance;
-            counts[row % QUANTITIES] += 1.0;
+            information += gradient.transpose() * gradient / variance;
+            if estimate.components.is_of_run(row) {
+                variances[row % QUANTITIES] += variance;
+                counts[row % QUANTITIES] += 1.0;
+            }
         }
         // What no run has, one more will not have either.
         for (variance, count) in variances.iter_mut().zip(counts) {
@@ -153,18 +185,18 @@ impl Known {
             };
         }
         Some(Self {
+            covariance: information.clone().try_inverse()?,
             information,
-            covariance: information.try_inverse()?,
             variances,
         })
     }
 
     /// Widths of both intervals with one run more, over the widths now.
     fn with(&self, jacobian: &DMatrix<f64>) -> Option<[f64; 2]> {
-        let mut information = self.information;
+        let mut information = self.information.clone();
         for (row, variance) in self.variances.iter().enumerate() {
-            let gradient = Vector2::new(jacobian[(row, 0)], jacobian[(row, 1)]);
-            information += gradient * gradient.transpose() / *variance;
+            let gradient = jacobian.row(row);
+            information += gradient.transpose() * gradient / *variance;
         }
         let covariance = information.try_inverse()?;
         Some([0, 1].map(|i| (covariance[(i, i)] / self.covariance[(i, i)]).sqrt()))

@@ -3,22 +3,25 @@
 //! (`explanations.rs`), how r_s and χ move with what the files take for granted, and the estimate that lets it move as far as it
 //! is known (`systematics.rs`). The verdict (`verdict.rs`) sums up, with its reasons.
 
+mod agreement;
 mod budget;
 mod document;
 mod explanations;
 mod goodness;
 mod known;
 mod modes;
+mod repeats;
 mod systematics;
 mod verdict;
 
 pub use budget::BudgetLine;
 pub use document::{
-    AssessmentDocument, ExcludedPart, GoodnessPart, HeadlinePart, OutlierPart, RunPart,
-    SystematicsPart,
+    AssessmentDocument, ExcludedPart, GoodnessPart, HeadlinePart, OutlierPart, RepeatsPart,
+    RunPart, SystematicsPart,
 };
 pub use explanations::{Explained, Explanation};
-pub use goodness::{Goodness, RunGoodness, SignTest};
+pub use goodness::{CommonDeviation, Goodness, Misfit, RunGoodness, SignTest};
+pub use repeats::Repeats;
 pub use systematics::{Nuisance, Systematics, Unforeseen};
 pub use verdict::{Headline, Verdict};
 
@@ -30,6 +33,7 @@ use crate::fit::parameter::Parameter;
 use crate::fit::run_model::RunModel;
 use crate::fit::run_values::RunValues;
 use crate::fit::tangent::Tangent;
+use crate::least_squares::Model as _;
 
 /// What the runs say of the fit's errors.
 #[derive(Debug, Clone, PartialEq)]
@@ -91,6 +95,24 @@ impl Plain {
         (self.model.with(parameters), at)
     }
 
+    /// The tangent of a model with more parameters, at the values that the files say: the derivatives by r_s and χ are known.
+    fn tangent_with(&self, model: &RunModel, start: &[f64]) -> Option<Tangent> {
+        let mut jacobian = self.all.jacobian.clone();
+        let values: Vec<f64> = self
+            .all
+            .residuals
+            .iter()
+            .zip(&self.data.values)
+            .map(|(residual, measured)| residual + measured)
+            .collect();
+        for column in self.all.at.len()..start.len() {
+            let place = jacobian.ncols();
+            jacobian = jacobian.insert_column(place, 0.0);
+            jacobian.set_column(place, &model.column(start, column, None)?);
+        }
+        Some(Tangent::new(start, values, jacobian, model.bounds()))
+    }
+
     /// L \[m\].
     fn length(&self) -> f64 {
         self.model.start.swimmer.total_length()
@@ -103,6 +125,17 @@ impl Plain {
             _ => 0.0,
         }
     }
+}
+
+/// The model of the recommended intervals, with all that may move, and its estimate: that with systematic errors if the runs
+/// suffice for it, else that of r_s and χ alone.
+pub(crate) fn recommended(found: &CampaignFit) -> Result<(RunModel, Estimate), FitError> {
+    let plain = Plain::of(found)?;
+    let priors = known::priors(found, &plain.model);
+    Ok(match systematics::Joint::of(&plain, &priors) {
+        Some(joint) => (plain.model.with(joint.parameters), joint.estimate),
+        None => (plain.model, plain.telling),
+    })
 }
 
 /// Assesses a finished fit; `evidence` where it was weighed.
@@ -119,7 +152,10 @@ pub fn assess(found: &CampaignFit, evidence: Option<&Evidence>) -> Result<Assess
     let goodness = goodness::goodness(found, &plain, joint.as_ref());
     let explanations = explanations::explanations(&plain);
     let budget = budget::budget(&plain, &priors);
-    let headline = verdict::headline(found, evidence, systematics.as_ref());
+    let agreement = joint
+        .as_ref()
+        .and_then(|joint| agreement::agreement(found, &plain, joint));
+    let headline = verdict::headline(found, evidence, systematics.as_ref(), agreement);
     let (verdict, reasons) = verdict::verdict(
         found,
         evidence,
@@ -127,6 +163,7 @@ pub fn assess(found: &CampaignFit, evidence: Option<&Evidence>) -> Result<Assess
         systematics.as_ref(),
         &explanations,
         &headline,
+        agreement,
     );
     Ok(Assessment {
         verdict,

@@ -6,11 +6,12 @@ use swimmer_model::Swimmer;
 use crate::cycles::{Cycles, Projection};
 use crate::data::CampaignData;
 use crate::error::{CalibrateError, FitError};
+use crate::fit::errors::RunErrors;
 use crate::fit::run_values::RunValues;
-use crate::fit::{self, CampaignFit, ExcludedRun, FitOptions};
+use crate::fit::{self, CampaignFit, ExcludedRun, FitOptions, FitWarning};
 use crate::nuisance::scan;
-use crate::prediction::Played;
-use crate::run::{EitherRun, Opposed, Run, Told};
+use crate::prediction::{Played, first_of_repeats};
+use crate::run::{EitherRun, Opposed, Run, Told, other_direction, same_recordings};
 
 /// Rounds of fit and phase: the phase of a gait without the paper's symmetries hangs on the drag, a little.
 const ROUNDS: usize = 4;
@@ -43,11 +44,13 @@ pub fn calibrate_campaign(
         let counts = |run: &usize| before[*run].is_none();
         let counting: Vec<usize> = (0..runs.len()).filter(counts).collect();
         let played: Vec<Played> = counting.iter().map(|run| runs[*run].played()).collect();
-        let variances: Vec<_> = runs
+        let errors: Vec<RunErrors> = runs
             .iter()
-            .map(|run| run.path_variances(&swimmer.swimmer, &projection))
+            .zip(&cycles)
+            .map(|(run, cycles)| run.errors(cycles, &swimmer.swimmer, &projection))
             .collect::<Result<_, _>>()?;
-        let values = RunValues::of(counting.iter().map(|run| (&cycles[*run], variances[*run])))?;
+        let measured = counting.iter().map(|run| (&cycles[*run], errors[*run]));
+        let values = RunValues::of(measured, &first_of_repeats(&played))?;
         let fit = fit::fit(&swimmer, played, &values, options.level)?;
         swimmer.swimmer = Swimmer {
             sphere_radius: fit.sphere_radius,
@@ -78,13 +81,13 @@ pub fn calibrate_campaign(
                 })
                 .collect();
             let mut finished = Vec::with_capacity(runs.len());
-            for (((run, cycles), variances), (left_out, opposed)) in runs
+            for (((run, cycles), errors), (left_out, opposed)) in runs
                 .into_iter()
                 .zip(cycles)
-                .zip(variances)
+                .zip(errors)
                 .zip(before.iter().zip(after))
             {
-                let run = run.finish(cycles, variances);
+                let run = run.finish(cycles, errors);
                 match left_out.map(|before| opposed.unwrap_or(before)) {
                     None => finished.push(run),
                     Some(opposed) => excluded.push(ExcludedRun {
@@ -107,6 +110,11 @@ pub fn calibrate_campaign(
             };
             let unknown = scan::noticed(&found);
             found.fit.warnings.extend(unknown);
+            let same = same_recordings(&found.runs).into_iter();
+            let same = same.map(|runs| FitWarning::SameRecording {
+                files: runs.map(|run| found.runs[run].file.clone()),
+            });
+            found.fit.warnings.extend(same);
             return Ok(found);
         }
         starts = next;
@@ -164,6 +172,7 @@ fn check_signs(runs: &[EitherRun<'_>], opposed: &[Option<Opposed>]) -> Result<()
                 files: names.collect::<Vec<_>>().join(", "),
                 measured_m: first.measured_m,
                 predicted_m: first.predicted_m,
+                direction: other_direction(first.is_clockwise),
             })
         }
         _ => Ok(()),

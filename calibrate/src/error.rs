@@ -122,8 +122,7 @@ pub enum FitError {
     /// X has the other sign than the model's in too many runs.
     #[error(
         "in {opposed} of {runs} runs the robot swam against the model ({files}; X of the first: {measured_m:.5} m, model \
-         {predicted_m:.5} m); either the gaits ran clockwise (add :cw to `gait`), or front and back reflectors are exchanged \
-         (exchange `at`)"
+         {predicted_m:.5} m); either the gaits ran {direction} `gait`), or front and back reflectors are exchanged (exchange `at`)"
     )]
     SignOpposes {
         /// In how many.
@@ -136,6 +135,8 @@ pub enum FitError {
         measured_m: f64,
         /// What the model swims \[m\].
         predicted_m: f64,
+        /// The direction that the first one must have run in, and the change of its name.
+        direction: &'static str,
     },
     /// The data say nothing about some combination of what was asked.
     #[error(

@@ -264,7 +264,8 @@ pub fn weigh_evidence(found: &CampaignFit, options: EvidenceOptions) -> Result<E
     let drawn: Vec<bootstrap::Drawn> = found
         .runs
         .iter()
-        .map(|run| problem.drawn(&run.cycles))
+        .enumerate()
+        .map(|(run, result)| problem.drawn(run, &result.cycles))
         .collect();
     let drawn = bootstrap::bootstrap(&surface, &drawn, problem.paper, level, options);
     let natural = |parameter: usize, ends: [f64; 2]| ends.map(|end| scale.natural(parameter, end));

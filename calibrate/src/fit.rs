@@ -21,7 +21,7 @@ pub(crate) mod run_values;
 mod search;
 pub(crate) mod tangent;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use swimmer_files::{Known, SwimmerFile};
 use swimmer_model::{Swimmer, TangentialDrag};
@@ -30,7 +30,7 @@ use crate::error::FitError;
 use crate::joints::{Measured, MeasuredServo, combined};
 use crate::least_squares::{Minimum, cost};
 use crate::median::median;
-use crate::prediction::{Played, PredictedCycle};
+use crate::prediction::{Played, PredictedCycle, first_of_repeats};
 use crate::quantities::{NAMES, QUANTITIES};
 use crate::run::RunResult;
 pub use intervals::Intervals;
@@ -143,6 +143,13 @@ pub enum FitWarning {
         /// What explains them nearly as well, and by how much.
         rival: Option<(&'static str, f64)>,
     },
+    /// Two runs hold the same cycles.
+    SameRecording {
+        /// Their files.
+        files: [PathBuf; 2],
+    },
+    /// Some values come without an error: intervals rest on the residuals alone.
+    NoErrors,
     /// The residuals say more than cycles' deviations: factor between both standard errors.
     ModelMisfit {
         /// Standard error by residuals over that by cycles.
@@ -200,6 +207,17 @@ impl std::fmt::Display for FitWarning {
                 )?;
                 alike(f, *rival)
             }
+            Self::SameRecording { files: [a, b] } => write!(
+                f,
+                "{} and {} hold the same recording: one of them names the wrong file, or is there twice (leave one out by `exclude`)",
+                short_name(a),
+                short_name(b)
+            ),
+            Self::NoErrors => f.write_str(
+                "values without an error (none stated, or runs of a single cycle): the intervals rest on the residuals of the fit, \
+                 and nothing tests the model; state x_sd_mm with cycles, or x_se_mm (likewise delta_y and delta_theta), or record \
+                 more cycles",
+            ),
             Self::NoSphere => f.write_str("the best fit has no sphere: r_s = 0 is at its bound"),
             Self::ModelMisfit { ratio } => write!(
                 f,
@@ -207,6 +225,12 @@ impl std::fmt::Display for FitWarning {
             ),
         }
     }
+}
+
+/// A file's name without its folder.
+pub(crate) fn short_name(file: &Path) -> String {
+    let name = file.file_name().unwrap_or(file.as_os_str());
+    name.to_string_lossy().into_owned()
 }
 
 /// What explains the runs as well.
@@ -305,10 +329,10 @@ impl CampaignFit {
 
     /// What its runs measured.
     pub(crate) fn values(&self) -> Result<RunValues, FitError> {
+        let played: Vec<&Played> = self.runs.iter().map(|run| &run.played).collect();
         RunValues::of(
-            self.runs
-                .iter()
-                .map(|run| (&run.cycles, run.path_variances)),
+            self.runs.iter().map(|run| (&run.cycles, run.errors)),
+            &first_of_repeats(&played),
         )
     }
 
@@ -377,8 +401,9 @@ fn summary(
         .enumerate()
         .map(|(run, ((residuals, weights), predicted))| {
             let left = |q: usize| {
-                if data.is_there(QUANTITIES * run + q) {
-                    residuals[q] * data.scales[q]
+                let row = QUANTITIES * run + q;
+                if data.is_there(row) {
+                    (residuals[q] + data.values[row] - data.own[row]) * data.scales[q]
                 } else {
                     f64::NAN
                 }
@@ -413,6 +438,9 @@ fn summary(
             quantity: NAMES[outlier.row % QUANTITIES],
             standard_errors: outlier.standard_errors,
         });
+    }
+    if !data.has_errors() {
+        warnings.push(FitWarning::NoErrors);
     }
     if spread.misfit > 10.0 {
         warnings.push(FitWarning::ModelMisfit {

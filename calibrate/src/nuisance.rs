@@ -32,11 +32,19 @@ pub enum Further {
     Gains,
     /// Lengths as the cameras give them over true ones.
     Scale,
+    /// Lengths of the three links.
+    Lengths,
+    /// Rotational drag of the float over a sphere's.
+    Float,
+    /// Stretch of the cameras' view: tilt, pixels that are not square.
+    Tilt,
+    /// Distortion of the lens.
+    Distortion,
 }
 
 impl Further {
     /// All of them.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 11] = [
         Self::TangentialDrag,
         Self::JointOffsets,
         Self::DeadBand,
@@ -44,6 +52,10 @@ impl Further {
         Self::Gain,
         Self::Gains,
         Self::Scale,
+        Self::Lengths,
+        Self::Float,
+        Self::Tilt,
+        Self::Distortion,
     ];
 
     /// How it is asked for: the words of `swimmer calibrate --fit-also`.
@@ -56,6 +68,10 @@ impl Further {
             Self::Gain => "gain",
             Self::Gains => "gains",
             Self::Scale => "scale",
+            Self::Lengths => "lengths",
+            Self::Float => "float",
+            Self::Tilt => "tilt",
+            Self::Distortion => "distortion",
         }
     }
 
@@ -80,6 +96,14 @@ impl Further {
             Self::Gain => &[Parameter::Gain],
             Self::Gains => &[Parameter::FrontGain, Parameter::BackGain],
             Self::Scale => &[Parameter::Scale],
+            Self::Lengths => &[
+                Parameter::MiddleLength,
+                Parameter::FrontLength,
+                Parameter::BackLength,
+            ],
+            Self::Float => &[Parameter::FloatTurning],
+            Self::Tilt => &[Parameter::StretchSquare, Parameter::StretchDiagonal],
+            Self::Distortion => &[Parameter::Distortion],
         }
     }
 }
@@ -208,14 +232,21 @@ pub fn fit_further(found: &CampaignFit, further: &[Further]) -> Result<FurtherFi
     parameters.extend(wanted.iter().flat_map(|further| further.parameters()));
     let mut data = found.values()?;
     // Y and the net turn tell the front from the back; all that is symmetric leaves them alone.
-    if wanted
-        .iter()
-        .any(|further| matches!(further, Further::JointOffsets | Further::Gains))
-    {
+    if wanted.iter().any(|further| {
+        matches!(
+            further,
+            Further::JointOffsets | Further::Gains | Further::Lengths | Further::Tilt
+        )
+    }) {
         data = data.with_all();
     }
     let plain = found.model(&data, plain)?;
     if let Some(idle) = parameters.iter().find(|p| !plain.has_use_for(**p)) {
+        if idle.is_of_view() {
+            return Err(FitError::Undetermined {
+                parameters: idle.name().to_owned(),
+            });
+        }
         return Err(FitError::Measured {
             parameter: idle.name(),
         });

@@ -14,15 +14,17 @@ use gait_player::playback::Playback;
 use gait_player::servo::ServoMap;
 use gait_player::servo::plant::PlantParameters;
 use gait_player::table::TableError;
-use nalgebra::Vector2;
+use nalgebra::{Matrix2, Rotation2, Vector2};
 use swimmer_files::{AnyGait, ServoFile, SwimmerFile, UnplayablePeriod, check_playable_period};
 use swimmer_model::{Gait, InvalidSwimmer, Model, Pose, Swimmer, Tolerance, trajectory};
 
-use crate::cycles::{self, Curve, Harmonics, Projection};
+use crate::cycles::{self, Curve, Cycles, Harmonics, Projection};
 use crate::sides::Sides;
 
 /// Knots of the table that a robot is given.
-const KNOTS: usize = 512;
+pub(crate) const KNOTS: usize = 512;
+/// Periods that differ by less, as a share, are the same.
+const SAME_PACE: f64 = 1e-3;
 /// Pieces of a gait that becomes a path: chords cut off 1e-4 of its area.
 const PIECES: usize = 256;
 
@@ -161,6 +163,13 @@ impl JointPath {
         Self::Played(places.map(|u| (u, later(u))).collect())
     }
 
+    /// The same way with the back joint of another one.
+    pub(crate) fn with_back_of(&self, other: &Self) -> Self {
+        let places = (0..=KNOTS).map(|i| i as f64 / KNOTS as f64);
+        let joined = |u: f64| Vector2::new(self.angles(u).x, other.angles(u).y);
+        Self::Played(places.map(|u| (u, joined(u))).collect())
+    }
+
     /// Both angles at any fraction of the cycle.
     fn angles(&self, u: f64) -> Vector2<f64> {
         let u = u.rem_euclid(1.0);
@@ -194,43 +203,120 @@ impl JointPath {
         swimmer: &Swimmer<f64>,
         projection: &Projection,
     ) -> Result<(PredictedCycle, Harmonics), InvalidSwimmer> {
-        let (curve, next) = self.curves(swimmer, projection, Pose::identity())?;
+        let swum = self.swum(&Model::new(swimmer)?);
+        let (curve, next) = swum.curves(projection, &Observation::exactly());
         Ok((cycle(&curve, &next, 0.0), curve.heading_harmonics()))
     }
 
-    /// The cycle as it is measured when another model may tell where cycles start, with these harmonics of its heading, and when
-    /// the point that is taken for the middle link's centre lies at `marker` on it, and what is taken for its heading is turned so.
-    pub(crate) fn predict_as_cut(
+    /// The poses of one cycle.
+    pub(crate) fn swum(&self, model: &Model<f64>) -> SwumCycle {
+        let (poses, end) = match self {
+            Self::Ideal(gait) => swum(model, gait),
+            Self::Played(vertices) => swum_along(model, vertices),
+        };
+        SwumCycle { poses, end }
+    }
+}
+
+/// A cycle's poses at the projection's places, and at its end.
+#[derive(Debug, Clone)]
+pub(crate) struct SwumCycle {
+    poses: Vec<Pose<f64>>,
+    end: Pose<f64>,
+}
+
+/// The way that poses come to be measured.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Observation {
+    /// The point on the middle link that is taken for its centre, and the turn of what is taken for its heading.
+    pub(crate) marker: Pose<f64>,
+    /// Lengths of the cameras over true ones, along and across the swimmer's first heading and sheared.
+    pub(crate) stretch: Matrix2<f64>,
+}
+
+impl Observation {
+    pub(crate) fn exactly() -> Self {
+        Self {
+            marker: Pose::identity(),
+            stretch: Matrix2::identity(),
+        }
+    }
+
+    fn pose(&self, pose: Pose<f64>) -> Pose<f64> {
+        let pose = pose * self.marker;
+        if self.stretch == Matrix2::identity() {
+            return pose;
+        }
+        let place = self.stretch * pose.position();
+        let (sin, cos) = pose.theta.sin_cos();
+        let line = Vector2::new(cos, sin);
+        let seen = self.stretch * line;
+        let turn = line.perp(&seen).atan2(line.dot(&seen));
+        Pose::new(place.x, place.y, pose.theta + turn)
+    }
+}
+
+impl SwumCycle {
+    /// The cycle as it is measured by such cameras, when another model may tell where cycles start, with these harmonics of its
+    /// heading.
+    pub(crate) fn as_cut(
         &self,
-        swimmer: &Swimmer<f64>,
         projection: &Projection,
-        marker: Pose<f64>,
+        seen: &Observation,
         cut_by: Option<&Harmonics>,
-    ) -> Result<PredictedCycle, InvalidSwimmer> {
-        let (curve, next) = self.curves(swimmer, projection, marker)?;
+    ) -> PredictedCycle {
+        let (curve, next) = self.curves(projection, seen);
         let shift = |cut_by: &Harmonics| cycles::shift(&curve.heading_harmonics(), cut_by);
         let start = cut_by.and_then(shift).unwrap_or(0.0);
-        Ok(cycle(&curve, &next, start - start.round()))
+        cycle(&curve, &next, start - start.round())
     }
 
     /// One cycle and the next.
-    fn curves(
-        &self,
-        swimmer: &Swimmer<f64>,
-        projection: &Projection,
-        marker: Pose<f64>,
-    ) -> Result<(Curve, Curve), InvalidSwimmer> {
-        let model = Model::new(swimmer)?;
-        let (mut poses, end) = match self {
-            Self::Ideal(gait) => swum(&model, gait),
-            Self::Played(vertices) => swum_along(&model, vertices),
-        };
-        if marker != Pose::identity() {
-            poses = poses.into_iter().map(|pose| pose * marker).collect();
+    fn curves(&self, projection: &Projection, seen: &Observation) -> (Curve, Curve) {
+        let here = self.poses.iter().map(|pose| seen.pose(*pose));
+        let next = self.poses.iter().map(|pose| seen.pose(self.end * *pose));
+        let (here, next) = (here.collect::<Vec<_>>(), next.collect::<Vec<_>>());
+        let (curve, next) = (projection.curve(&here), projection.curve(&next));
+        (curve.drifting(&curve, &next, 1.0), next)
+    }
+}
+
+/// Direction and place of a run in the view of the cameras.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct View {
+    /// Heading at the starts of its cycles \[rad\].
+    pub(crate) heading: f64,
+    /// Mean place of its cycles: in metres, or over the runs' mean distance from their centre.
+    pub(crate) place: Vector2<f64>,
+}
+
+impl View {
+    /// Of a run's cycles; `None` if it has none.
+    pub(crate) fn of(cycles: &Cycles) -> Option<Self> {
+        const PLACES: usize = 8;
+        let count = cycles.cycles.len() as f64;
+        let (mut place, mut line) = (Vector2::zeros(), Vector2::zeros());
+        for cycle in &cycles.cycles {
+            let (sin, cos) = cycle.at(0.0).theta.sin_cos();
+            line += Vector2::new(cos, sin);
+            for i in 0..PLACES {
+                let at = cycle.at(i as f64 / PLACES as f64).position();
+                place += at / (PLACES as f64 * count);
+            }
         }
-        let next: Vec<Pose<f64>> = poses.iter().map(|pose| end * *pose).collect();
-        let (curve, next) = (projection.curve(&poses), projection.curve(&next));
-        Ok((curve.drifting(&curve, &next, 1.0), next))
+        (count > 0.0).then(|| Self {
+            heading: line.y.atan2(line.x),
+            place,
+        })
+    }
+
+    /// The stretch of a view in the frame of this run's heading: that of cameras, and that of a lens by the distance.
+    pub(crate) fn stretch(&self, cameras: Matrix2<f64>, distortion: f64) -> Matrix2<f64> {
+        let place = self.place;
+        let lens = Matrix2::identity() * (distortion * place.norm_squared())
+            + place * place.transpose() * (2.0 * distortion);
+        let turn = Rotation2::new(self.heading);
+        turn.inverse() * (cameras + lens) * turn
     }
 }
 
@@ -244,6 +330,8 @@ pub(crate) struct Played {
     pub(crate) path: JointPath,
     /// The heading by which its cycles were cut, where that is not each model's own.
     pub(crate) cut_by: Option<Harmonics>,
+    /// Direction and place of its cycles, if it was tracked.
+    pub(crate) view: Option<View>,
     /// Where reflectors showed `path`: it holds for its cycles as they were cut, and servos have no part in it.
     pub(crate) sides: Option<Sides>,
 }
@@ -263,9 +351,25 @@ impl Played {
             period_s,
             path: JointPath::new(gait, servo, period_s)?,
             cut_by: None,
+            view: None,
             sides: None,
         })
     }
+}
+
+/// The first run that played the same gait at the same pace, for each run. Measured joint angles are each run's own.
+pub(crate) fn first_of_repeats<P: std::borrow::Borrow<Played>>(runs: &[P]) -> Vec<usize> {
+    let same = |a: &Played, b: &Played| {
+        let slow = (a.period_s / b.period_s - 1.0).abs() < SAME_PACE;
+        slow && a.sides.is_none() && b.sides.is_none() && a.gait == b.gait
+    };
+    let first = |(run, played): (usize, &P)| {
+        let mut before = runs[..run].iter();
+        before
+            .position(|other| same(other.borrow(), played.borrow()))
+            .unwrap_or(run)
+    };
+    runs.iter().enumerate().map(first).collect()
 }
 
 fn cycle(curve: &Curve, next: &Curve, start: f64) -> PredictedCycle {

@@ -2,6 +2,7 @@
 
 mod diagnoses;
 mod either;
+mod same;
 mod told;
 
 use std::path::PathBuf;
@@ -12,12 +13,14 @@ use swimmer_model::{Gait as _, Swimmer};
 use crate::cycles::{Clock, Cycles, Phase, Projection};
 use crate::data::RunData;
 use crate::error::CalibrateError;
+use crate::fit::errors::RunErrors;
 use crate::joints::{self, MeasuredJoints};
 use crate::poses::{self, FrontRule, PoseOptions, PoseTrack, PoseWarning};
 use crate::prediction::Played;
 use crate::quantities::{QUANTITIES, predicted};
 
 pub(crate) use either::EitherRun;
+pub(crate) use same::same_recordings;
 pub(crate) use told::Told;
 
 /// One run's outcome.
@@ -41,8 +44,8 @@ pub struct RunResult {
     pub joints: Option<MeasuredJoints>,
     /// What was played: as it was seen, or as it was told.
     pub(crate) played: Played,
-    /// Variances of what the model makes of the measured angles: X, ΔY, Δθ, Y, net turn.
-    pub(crate) path_variances: [f64; QUANTITIES],
+    /// Variances that the scatter between its cycles does not show.
+    pub(crate) errors: RunErrors,
 }
 
 impl RunResult {
@@ -57,16 +60,28 @@ impl RunResult {
 pub(crate) struct Opposed {
     pub(crate) measured_m: f64,
     pub(crate) predicted_m: f64,
+    /// Whether its gait is named with `:cw`.
+    pub(crate) is_clockwise: bool,
+}
+
+/// The direction that a gait ran in if it swam against the model, and the change of its name.
+pub(crate) fn other_direction(is_clockwise: bool) -> &'static str {
+    if is_clockwise {
+        "counter-clockwise (take :cw off"
+    } else {
+        "clockwise (add :cw to"
+    }
 }
 
 impl std::fmt::Display for Opposed {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(
             f,
-            "it swims against the model (X {:.3} mm, model {:.3} mm): the gait ran clockwise (add :cw to `gait`), or front and back are \
-             exchanged (say so by `front` in its [[run]])",
+            "it swims against the model (X {:.3} mm, model {:.3} mm): the gait ran {} `gait`), or front and back are exchanged (say so \
+             by `front` in its [[run]])",
             1e3 * self.measured_m,
-            1e3 * self.predicted_m
+            1e3 * self.predicted_m,
+            other_direction(self.is_clockwise)
         )
     }
 }
@@ -135,8 +150,33 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// How sure what this model makes of the measured angles is: the jackknife over cycles.
-    pub(crate) fn path_variances(
+    /// Variances that the scatter between its cycles does not show: of the model's values by measured angles, as the jackknife
+    /// over cycles has them, and by the noise of the cameras.
+    pub(crate) fn errors(
+        &self,
+        cycles: &Cycles,
+        swimmer: &Swimmer<f64>,
+        projection: &Projection,
+    ) -> Result<RunErrors, CalibrateError> {
+        Ok(RunErrors {
+            path: self.path_variances(swimmer, projection)?,
+            noise: self.noise_variances(cycles),
+        })
+    }
+
+    /// Variances of the values of one cycle by the noise of the cameras alone: twice that of a mean over its samples.
+    fn noise_variances(&self, cycles: &Cycles) -> [f64; QUANTITIES] {
+        let count = cycles.cycles.len().max(1) as f64;
+        let squares = cycles.cycles.iter().map(|cycle| cycle.residual_m.powi(2));
+        let samples = (cycles.period_s * self.poses.rate_hz).max(1.0);
+        // Both coordinates of the middle of the reflectors.
+        let length = squares.sum::<f64>() / count / samples;
+        let angle = length * (2.0 / self.poses.report.distance_m).powi(2);
+        [length, length, angle, length, angle]
+            .map(|variance| if variance.is_finite() { variance } else { 0.0 })
+    }
+
+    fn path_variances(
         &self,
         swimmer: &Swimmer<f64>,
         projection: &Projection,
@@ -209,7 +249,7 @@ impl<'a> Run<'a> {
         Ok(cycles)
     }
 
-    pub(crate) fn finish(self, cycles: Cycles, path_variances: [f64; QUANTITIES]) -> RunResult {
+    pub(crate) fn finish(self, cycles: Cycles, errors: RunErrors) -> RunResult {
         let reader = self.data.track.warnings.iter().map(ToString::to_string);
         let poses = self.poses.warnings.iter().map(ToString::to_string);
         let own = cycles.warnings.iter().map(ToString::to_string);
@@ -235,13 +275,13 @@ impl<'a> Run<'a> {
             reflector_distance_m: (front[0] - back[0]).hypot(front[1] - back[1]),
             played,
             joints: self.joints,
-            path_variances,
+            errors,
         }
     }
 }
 
 /// Whether X has the other sign than the model's, and about its size.
-fn opposed(cycles: &Cycles, predicted_m: f64) -> Option<Opposed> {
+fn opposed(cycles: &Cycles, predicted_m: f64, is_clockwise: bool) -> Option<Opposed> {
     let measured_m = cycles.x.mean;
     let reversed = REVERSED.contains(&(measured_m / predicted_m));
     // A lone cycle has no error, and its word counts.
@@ -249,6 +289,7 @@ fn opposed(cycles: &Cycles, predicted_m: f64) -> Option<Opposed> {
     (reversed && sure).then_some(Opposed {
         measured_m,
         predicted_m,
+        is_clockwise,
     })
 }
 
@@ -303,6 +344,6 @@ pub fn calibrate_run(
     let mut begun = Run::begin(run, 0, reflectors, swimmer)?;
     let start_s = begun.start(&swimmer.swimmer, &projection)?;
     let cycles = begun.settled(start_s, &swimmer.swimmer, &projection)?;
-    let variances = begun.path_variances(&swimmer.swimmer, &projection)?;
-    Ok(begun.finish(cycles, variances))
+    let errors = begun.errors(&cycles, &swimmer.swimmer, &projection)?;
+    Ok(begun.finish(cycles, errors))
 }

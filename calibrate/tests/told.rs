@@ -126,7 +126,7 @@ fn told(reason: &str) -> String {
     let short = reason.split(": look at it").next().unwrap_or(reason);
     let mut out = String::new();
     for word in short.split_inclusive(' ') {
-        let is_number = |c: char| c.is_ascii_digit() || "+-−.±%°()".contains(c);
+        let is_number = |c: char| c.is_ascii_digit() || "+-−.±%°(),;".contains(c);
         let bare = word.trim_end();
         if bare.is_empty() || !bare.chars().all(is_number) {
             out.push_str(word);

@@ -32,7 +32,7 @@ const MILLIMETRE: f64 = 1e-3;
 const PERCENT: f64 = 0.01;
 
 /// What the budget asks after, and by how much it is off.
-const LINES: [(Parameter, f64); 12] = [
+const LINES: [(Parameter, f64); 18] = [
     (Parameter::Gain, PERCENT),
     (Parameter::Scale, PERCENT),
     (Parameter::MarkerAlong, MILLIMETRE),
@@ -45,6 +45,12 @@ const LINES: [(Parameter, f64); 12] = [
     (Parameter::DeadBand, DEGREE),
     (Parameter::TangentialDrag, PERCENT),
     (Parameter::Period, PERCENT),
+    (Parameter::MiddleLength, MILLIMETRE),
+    (Parameter::FrontLength, MILLIMETRE),
+    (Parameter::BackLength, MILLIMETRE),
+    (Parameter::FloatTurning, PERCENT),
+    (Parameter::StretchSquare, PERCENT),
+    (Parameter::Distortion, PERCENT),
 ];
 
 /// The budget of the estimate of greatest likelihood.

@@ -4,7 +4,10 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::{Assessment, BudgetLine, Explanation, Nuisance, RunGoodness, SignTest, Unforeseen};
+use super::{
+    Assessment, BudgetLine, CommonDeviation, Explanation, Misfit, Nuisance, Repeats, RunGoodness,
+    SignTest, Unforeseen,
+};
 use crate::evidence::Pair;
 use crate::{CampaignFit, Intervals};
 
@@ -56,6 +59,23 @@ pub struct GoodnessPart {
     pub signs: Vec<SignTest>,
     /// Run by run.
     pub runs: Vec<RunPart>,
+    /// Y and net turn that all runs have beyond the model.
+    pub common: Vec<CommonDeviation>,
+    /// Deviations that nothing explains; null if scatter does.
+    pub misfit: Option<Misfit>,
+    /// Runs that repeat a gait; left out if none does.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub repeats: Vec<RepeatsPart>,
+}
+
+/// Runs that repeat a gait.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RepeatsPart {
+    /// Their files.
+    pub files: Vec<String>,
+    /// Their scatter.
+    #[serde(flatten)]
+    pub repeats: Repeats,
 }
 
 /// What one run says by itself.
@@ -130,6 +150,17 @@ impl Assessment {
                     .map(|(run, goodness)| RunPart {
                         file: file(run),
                         goodness: *goodness,
+                    })
+                    .collect(),
+                common: self.goodness.common.clone(),
+                misfit: self.goodness.misfit,
+                repeats: self
+                    .goodness
+                    .repeats
+                    .iter()
+                    .map(|repeats| RepeatsPart {
+                        files: repeats.runs.iter().map(|run| file(*run)).collect(),
+                        repeats: repeats.clone(),
                     })
                     .collect(),
             },

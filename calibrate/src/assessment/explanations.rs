@@ -5,11 +5,13 @@ use serde::Serialize;
 
 use super::Plain;
 use crate::evidence::Pair;
+use crate::fit::likelihood::Estimate;
 use crate::fit::parameter::Parameter;
+use crate::fit::run_model::RunModel;
 use crate::fit::tangent::Tangent;
 
 /// What is tried, and from where beside what the files say.
-const TRIED: [(&str, &[Parameter], &[f64]); 8] = [
+const TRIED: [(&str, &[Parameter], &[f64]); 15] = [
     ("gain", &[Parameter::Gain], &[]),
     (
         "gain of each servo",
@@ -38,7 +40,29 @@ const TRIED: [(&str, &[Parameter], &[f64]); 8] = [
     ),
     ("camera scale", &[Parameter::Scale], &[]),
     ("c_t/mu", &[Parameter::TangentialDrag], &[]),
+    (
+        "dead band of each servo",
+        &[Parameter::DeadBand, Parameter::DeadBandDifference],
+        &[],
+    ),
+    ("lag of one joint", &[Parameter::FrontLag], &[]),
+    ("middle link's length", &[Parameter::MiddleLength], &[]),
+    (
+        "side links' lengths",
+        &[Parameter::FrontLength, Parameter::BackLength],
+        &[],
+    ),
+    ("float's shape", &[Parameter::FloatTurning], &[]),
+    (
+        "cameras' tilt",
+        &[Parameter::StretchSquare, Parameter::StretchDiagonal],
+        &[],
+    ),
+    ("lens distortion", &[Parameter::Distortion], &[]),
 ];
+
+/// Growth of the log-likelihood along a tangent from which on an explanation is followed by the model itself.
+const WORTH_WHILE: f64 = 2.0;
 
 /// One parameter of an explanation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -66,6 +90,13 @@ pub struct Explanation {
     pub estimate: Pair,
 }
 
+impl Explanation {
+    /// Gain less what as many parameters bring by chance.
+    pub(super) fn worth(&self) -> f64 {
+        self.gain - self.parameters.len() as f64
+    }
+}
+
 /// All of them, the likeliest first.
 pub(super) fn explanations(plain: &Plain) -> Vec<Explanation> {
     let explain = |(name, more, others): &(&'static str, &[Parameter], &[f64])| {
@@ -73,13 +104,23 @@ pub(super) fn explanations(plain: &Plain) -> Vec<Explanation> {
             .iter()
             .map(|parameter| plain.filed(*parameter))
             .collect();
-        let starts = std::iter::once(filed.clone()).chain(others.iter().map(|value| vec![*value]));
         let data = &plain.data;
-        let even = data.weights(|_| 1.0);
-        let found = starts.filter_map(|values| {
-            let (model, start) = plain.with(more, &values);
-            Some(Tangent::estimate(&model, data, &start, &even)?.0)
+        let along = |model: &RunModel, tangent: &Tangent, start: &[f64]| {
+            let rough = Estimate::of(tangent, data, start)?;
+            if rough.log_likelihood - plain.all.log_likelihood < WORTH_WHILE {
+                return Some(rough);
+            }
+            let found = Tangent::estimate(model, data, &rough.at, &rough.weights)?.0;
+            Some(found)
+        };
+        let (model, start) = plain.with(more, &filed);
+        let first = plain.tangent_with(&model, &start);
+        let first = first.and_then(|tangent| along(&model, &tangent, &start));
+        let found = others.iter().filter_map(|value| {
+            let (model, start) = plain.with(more, &[*value]);
+            along(&model, &Tangent::of(&model, &start)?, &start)
         });
+        let found = first.into_iter().chain(found);
         let best = found.max_by(|a, b| a.log_likelihood.total_cmp(&b.log_likelihood))?;
         let parameters = more.iter().zip(&filed).zip(&best.at[2..]);
         Some(Explanation {
@@ -104,6 +145,7 @@ pub(super) fn explanations(plain: &Plain) -> Vec<Explanation> {
         .filter(|(_, more, _)| more.iter().all(|p| plain.model.has_use_for(*p)))
         .filter_map(explain)
         .collect();
-    out.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    // By Akaike's criterion: more parameters explain more by chance.
+    out.sort_by(|a, b| b.worth().total_cmp(&a.worth()));
     out
 }

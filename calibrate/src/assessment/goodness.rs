@@ -1,14 +1,15 @@
 //! How well does the model explain the runs? Against the cycles' own scatter, which what all cycles share does not widen.
 
 use serde::Serialize;
-use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::Plain;
+use super::repeats::{Repeats, repeats};
 use super::systematics::Joint;
 use crate::fit::CampaignFit;
 use crate::fit::likelihood::Estimate;
 use crate::least_squares::{Model as _, minimise};
 use crate::quantities::{NAMES, QUANTITIES, TELLING, measured};
+use crate::student;
 use swimmer_model::Gait as _;
 
 /// The signs of what is left of one quantity, from the smallest gait to the largest.
@@ -29,11 +30,11 @@ pub struct SignTest {
 pub struct RunGoodness {
     /// Y over X, and its standard error by the run's cycles: a symmetric gait has none.
     pub y_over_x: [f64; 2],
-    /// Chance of so much Y or more in a run that has none (Student's t).
+    /// Chance of a Y so far or further from the model's, whose servos are those of the swimmer file (Student's t).
     pub y_chance: f64,
     /// Net turn of a cycle \[rad\], and its standard error by the run's cycles: a symmetric gait has none.
     pub turn_rad: [f64; 2],
-    /// Chance of so much turn or more in a run that has none.
+    /// Chance of a turn so far or further from the model's.
     pub turn_chance: f64,
     /// What would explain X, and Y, beyond the model: velocity along and across the heading \[m/s\].
     pub drift_m_per_s: [f64; 2],
@@ -52,6 +53,36 @@ pub struct Goodness {
     pub signs: Vec<SignTest>,
     /// Run by run.
     pub runs: Vec<RunGoodness>,
+    /// Y and net turn that all runs have and the model with systematic errors does not.
+    pub common: Vec<CommonDeviation>,
+    /// Runs that repeat a gait.
+    pub repeats: Vec<Repeats>,
+    /// The largest misfit of ΔY and Δθ, which no drift of the fluid explains; `None` if the scatter explains all.
+    pub misfit: Option<Misfit>,
+}
+
+/// Deviations from run to run that neither scatter nor systematic errors explain.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Misfit {
+    /// `ΔY` or `Δθ`.
+    pub quantity: &'static str,
+    /// Their standard deviation over the largest value.
+    pub share: f64,
+    /// The same over the scatter within runs.
+    pub ratio: f64,
+}
+
+/// A mean over the runs of what the model leaves, tested against their own scatter.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct CommonDeviation {
+    /// `Y/X` or `net turn`.
+    pub quantity: &'static str,
+    /// Measured less predicted: a share, or rad.
+    pub mean: f64,
+    /// Its standard error, by the runs' scatter.
+    pub error: f64,
+    /// Probability of such a mean if runs had neither (Student's t).
+    pub chance: f64,
 }
 
 /// Points of a gait at which its size is looked for.
@@ -59,7 +90,7 @@ const POINTS: usize = 64;
 
 pub(super) fn goodness(found: &CampaignFit, plain: &Plain, joint: Option<&Joint>) -> Goodness {
     let data = plain.data.without(|row| row % QUANTITIES >= TELLING);
-    let told = data.within.iter().all(|within| within.freedom > 0.0);
+    let told = data.has_errors();
     let weights = data.weights(|row| data.within[row].value);
     let (model, at) = (&plain.model, &plain.telling.at);
     let end = minimise(model, &data.values, &weights, at, &model.bounds());
@@ -92,7 +123,75 @@ pub(super) fn goodness(found: &CampaignFit, plain: &Plain, joint: Option<&Joint>
         runs: (0..sizes.len())
             .map(|run| of_run(found, plain, joint, run))
             .collect(),
+        common: [(3, "Y/X"), (4, "net turn")]
+            .into_iter()
+            .filter_map(|(q, name)| common(plain, joint, q, name))
+            .collect(),
+        repeats: repeats(found, plain),
+        misfit: joint.and_then(misfit),
     }
+}
+
+/// Deviations of ΔY and Δθ over their scatter from which on they are a misfit.
+const BEYOND_SCATTER: f64 = 3.0;
+
+fn misfit(joint: &Joint) -> Option<Misfit> {
+    let components = &joint.estimate.components;
+    let of = |q: usize| {
+        let rows = (q..components.within.len()).step_by(QUANTITIES);
+        let rows = rows.filter(|row| joint.data.used[*row] && components.is_of_run(*row));
+        let within: Vec<f64> = rows.map(|row| components.within[row].value).collect();
+        let scatter = (within.iter().sum::<f64>() / within.len() as f64).sqrt();
+        let share = components.between[q].sqrt();
+        (share > BEYOND_SCATTER * scatter).then_some(Misfit {
+            quantity: NAMES[q],
+            share,
+            ratio: share / scatter,
+        })
+    };
+    let both = [of(1), of(2)].into_iter().flatten();
+    both.max_by(|a, b| a.share.total_cmp(&b.share))
+}
+
+/// Fewest runs of which a common mean means anything.
+const FEWEST_FOR_COMMON: usize = 4;
+
+/// The mean over runs of Y (over X) or net turn beyond the model.
+fn common(
+    plain: &Plain,
+    joint: Option<&Joint>,
+    q: usize,
+    quantity: &'static str,
+) -> Option<CommonDeviation> {
+    let estimate = joint.map_or(&plain.all, |joint| &joint.estimate);
+    let data = &plain.data;
+    let of_run = |run: usize| {
+        let row = QUANTITIES * run + q;
+        let per = if q == 3 {
+            data.values[QUANTITIES * run]
+        } else {
+            1.0 / data.scales[q]
+        };
+        data.used[row].then(|| -estimate.residuals[row] / per)
+    };
+    let values: Vec<f64> = (0..data.values.len() / QUANTITIES)
+        .filter_map(of_run)
+        .filter(|value| value.is_finite())
+        .collect();
+    if values.len() < FEWEST_FOR_COMMON {
+        return None;
+    }
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let squares = values.iter().map(|value| (value - mean).powi(2));
+    let error = (squares.sum::<f64>() / (count - 1.0) / count).sqrt();
+    let chance = student::two_sided(count - 1.0, mean / error);
+    Some(CommonDeviation {
+        quantity,
+        mean,
+        error,
+        chance,
+    })
 }
 
 fn signs(quantity: &'static str, residuals: impl Iterator<Item = f64>) -> SignTest {
@@ -143,21 +242,31 @@ fn of_run(found: &CampaignFit, plain: &Plain, joint: Option<&Joint>, run: usize)
             f64::NAN
         }
     };
-    let value = |q: usize| there(q, plain.data.values[row(q)] * scale(q));
-    let error = |q: usize| plain.data.within[row(q)].value.sqrt() * scale(q);
+    let data = &plain.data;
+    // Predicted less measured of this run by itself.
+    let left = |residuals: &[f64], q: usize| {
+        let row = row(q);
+        (residuals[row] + data.values[row] - data.own[row]) * scale(q)
+    };
+    let value = |q: usize| there(q, data.own[row(q)] * scale(q));
+    let error = |q: usize| {
+        let within = data.own_within[row(q)];
+        if within.is_known() {
+            within.value.sqrt() * scale(q)
+        } else {
+            f64::NAN
+        }
+    };
     let chance = |q: usize| {
-        let freedom = plain.data.within[row(q)].freedom.max(1.0);
-        let t = (value(q) / error(q)).abs();
+        let freedom = data.own_within[row(q)].freedom.max(1.0);
+        let t = there(q, left(&plain.all.residuals, q) / error(q)).abs();
         if !t.is_finite() {
             // Not there, or of one cycle, which tells of no scatter.
             return f64::NAN;
         }
-        StudentsT::new(0.0, 1.0, freedom).map_or(f64::NAN, |student| 2.0 * student.sf(t))
+        student::two_sided(freedom, t)
     };
-    let beyond = |q: usize| {
-        let left = -estimate.residuals[row(q)] * scale(q);
-        there(q, left / result.cycles.period_s)
-    };
+    let beyond = |q: usize| there(q, -left(&estimate.residuals, q) / result.cycles.period_s);
     let [x, .., turn] = measured(&result.cycles).map(|statistics| statistics.mean);
     RunGoodness {
         y_over_x: [value(3) / x, (error(3) / x).abs()],

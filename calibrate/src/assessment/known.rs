@@ -8,6 +8,8 @@ use crate::fit::parameter::Parameter;
 use crate::fit::prior::Prior;
 use crate::fit::run_model::RunModel;
 
+/// Lengths of the links \[m\], where the campaign says nothing.
+const LINKS: f64 = 3e-4;
 /// A servo's gain, joint offsets \[rad\] and the cameras' scale, where the campaign says nothing.
 const GAIN: f64 = 0.005;
 const OFFSET: f64 = 0.3 * std::f64::consts::PI / 180.0;
@@ -40,12 +42,22 @@ pub(super) fn priors(found: &CampaignFit, model: &RunModel) -> Vec<Known> {
     let link = |joint: usize| reaches.map(|reaches| usual(0.0, reflector / reaches[joint]));
     // Both reflectors are placed as well as their middle, to a factor that nobody knows.
     let angle = usual(0.0, std::f64::consts::SQRT_2 * reflector / distance);
+    let links = Some(usual(0.0, LINKS));
     let of = |parameter: Parameter, stated: Option<KnownValue>, usual: Option<KnownValue>| {
         let KnownValue { value, width } = stated.or(usual)?;
         let (centre, unit) = match parameter {
-            Parameter::Gain | Parameter::Scale | Parameter::Period => (value - 1.0, 1.0),
-            Parameter::TangentialDrag => (value.ln(), value),
-            Parameter::MarkerAlong | Parameter::MarkerAcross => (value / length, length),
+            Parameter::Gain
+            | Parameter::Scale
+            | Parameter::Period
+            | Parameter::StretchSquare
+            | Parameter::StretchDiagonal
+            | Parameter::Distortion => (value - 1.0, 1.0),
+            Parameter::TangentialDrag | Parameter::FloatTurning => (value.ln(), value),
+            Parameter::MarkerAlong
+            | Parameter::MarkerAcross
+            | Parameter::MiddleLength
+            | Parameter::FrontLength
+            | Parameter::BackLength => (value / length, length),
             _ => (value, 1.0),
         };
         (width > 0.0).then_some(Known {
@@ -90,6 +102,13 @@ pub(super) fn priors(found: &CampaignFit, model: &RunModel) -> Vec<Known> {
         of(Parameter::DeadBand, known.dead_band, None),
         of(Parameter::TangentialDrag, known.c_t, None),
         of(Parameter::Period, known.period, None),
+        of(Parameter::MiddleLength, known.links, links),
+        of(Parameter::FrontLength, known.links, links),
+        of(Parameter::BackLength, known.links, links),
+        of(Parameter::FloatTurning, known.float_turning, None),
+        of(Parameter::StretchSquare, known.camera_stretch, None),
+        of(Parameter::StretchDiagonal, known.camera_stretch, None),
+        of(Parameter::Distortion, known.lens_distortion, None),
     ]
     .into_iter()
     .flatten()

@@ -13,7 +13,7 @@ use crate::fit::prior::{Prior, WithPriors};
 use crate::fit::run_model::RunModel;
 use crate::fit::run_values::RunValues;
 use crate::fit::tangent::Tangent;
-use crate::least_squares::weighted;
+use crate::least_squares::{Model as _, weighted};
 
 /// Of how many values one may be left out as unlike the others.
 const VALUES_FOR_ONE: usize = 8;
@@ -79,23 +79,43 @@ impl JointProblem {
         }
     }
 
+    /// The parameters of its model.
+    pub(super) fn parameters(&self) -> &[Parameter] {
+        &self.model.parameters
+    }
+
     fn model(&self) -> WithPriors<'_> {
         WithPriors::new(&self.model, &self.data, &self.priors).0
     }
 
-    /// The likeliest mode whose evidence along the tangent is above `least`.
-    pub(super) fn mode(&self, least: f64) -> Option<Mode> {
-        let tangent = Tangent::of(&self.model(), &self.start)?;
+    /// The model's tangent where the search begins.
+    pub(super) fn tangent(&self) -> Option<Tangent> {
+        Tangent::of(&self.model(), &self.start)
+    }
+
+    /// The same with the derivatives of a problem that knows one thing less.
+    pub(super) fn tangent_beyond(&self, base: &Tangent) -> Option<Tangent> {
+        let model = self.model();
+        let last = self.start.len() - 1;
+        let mut column = self.model.column(&self.start, last, None)?;
+        let rows = self.data.values.len();
+        column = column.resize_vertically(rows, 0.0);
+        column[rows - 1] = 1.0;
+        Some(base.beyond(&model, &self.start, model.values(&self.start)?, &column))
+    }
+
+    /// The likeliest mode whose evidence along a tangent is above `least`.
+    pub(super) fn mode(&self, least: f64, tangent: &Tangent) -> Option<Mode> {
         let even = self.data.weights(|_| 1.0);
         let sides = [&self.scattered, &even].map(|weights| {
-            let end = Estimate::of_weighted(&tangent, &self.data, &self.start, weights.clone())?;
-            self.doubted(&tangent, self.data.clone(), end)
+            let end = Estimate::of_weighted(tangent, &self.data, &self.start, weights.clone())?;
+            self.doubted(tangent, self.data.clone(), end)
         });
         let forgotten = (0..self.priors.len()).map(|index| {
             let mut data = self.data.clone();
             data.within[self.first + index].value *= FORGOTTEN * FORGOTTEN;
-            let end = Estimate::of(&tangent, &data, &self.start)?;
-            self.doubted(&tangent, data, end)
+            let end = Estimate::of(tangent, &data, &self.start)?;
+            self.doubted(tangent, data, end)
         });
         let ends = sides.into_iter().chain(forgotten).flatten();
         let mut ends: Vec<(Estimate, RunValues)> = ends

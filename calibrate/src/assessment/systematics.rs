@@ -21,10 +21,18 @@ use crate::quantities::{NAMES, QUANTITIES};
 /// What no file knows, and how much of it would be no surprise (rad, ln, s): tried beside all that is known. It is reckoned with
 /// where the runs are twenty times likelier with it (ln of odds), as it is one of the things that hardly ever are, and so many
 /// standard deviations of its own; above higher odds it is certain.
-const UNFORESEEN: [(Parameter, f64); 3] = [
+const UNFORESEEN: [(Parameter, f64); 8] = [
     (Parameter::DeadBand, 5.0 * std::f64::consts::PI / 180.0),
     (Parameter::TangentialDrag, 0.3),
     (Parameter::FrontLag, 0.1),
+    (
+        Parameter::DeadBandDifference,
+        3.0 * std::f64::consts::PI / 180.0,
+    ),
+    (Parameter::FloatTurning, 0.4),
+    (Parameter::StretchSquare, 0.01),
+    (Parameter::StretchDiagonal, 0.01),
+    (Parameter::Distortion, 0.01),
 ];
 const LEAST_ODDS: f64 = 3.0;
 pub(super) const CERTAIN_ODDS: f64 = 7.0;
@@ -88,6 +96,8 @@ pub struct Systematics {
 /// The joint likelihood's optimum.
 pub(super) struct Joint {
     known: Vec<Known>,
+    /// r_s, χ, what is known by halves, and what nobody knew of.
+    pub(super) parameters: Vec<Parameter>,
     /// Where what is known stands among the values.
     first: usize,
     pub(super) data: RunValues,
@@ -107,6 +117,18 @@ fn remedy(parameter: Parameter) -> &'static str {
         Parameter::FrontLag => {
             "let both servos be told at once, or let reflectors on the side links show the angles ([reflectors] front_link)"
         }
+        Parameter::DeadBandDifference => {
+            "exchange a servo, or let reflectors on the side links show the angles ([reflectors] front_link)"
+        }
+        Parameter::FloatTurning => {
+            "a float that is no sphere, or walls near by; fit it by --fit-also float, then state float_turning under [known]"
+        }
+        Parameter::StretchSquare | Parameter::StretchDiagonal => {
+            "cameras that look aslant, or pixels that are not square; calibrate them, or fit it by --fit-also tilt"
+        }
+        Parameter::Distortion => {
+            "calibrate the lens, or swim all runs at one place; fit it by --fit-also distortion"
+        }
         _ => "fit it by --fit-also ct, then say so in the swimmer file",
     }
 }
@@ -115,7 +137,8 @@ impl Joint {
     /// The likeliest by all that is known, and by one thing more where the runs ask for that; then without what is unlike all else.
     pub(super) fn of(plain: &Plain, known: &[Known]) -> Option<Self> {
         let problem = JointProblem::new(plain, known, None);
-        let foreseen = problem.mode(f64::NEG_INFINITY)?;
+        let tangent = problem.tangent()?;
+        let foreseen = problem.mode(f64::NEG_INFINITY, &tangent)?;
         let least = evidence(&foreseen.estimate) + LEAST_ODDS;
         let enough = |mode: &Mode| evidence(&mode.estimate) > least;
         let untold = |parameter: Parameter| {
@@ -132,7 +155,10 @@ impl Joint {
                 width: *width,
             };
             let problem = JointProblem::new(plain, known, Some(prior));
-            let mode = problem.mode(least - TANGENTS_ERROR).filter(enough)?;
+            let tangent = problem.tangent_beyond(&tangent)?;
+            let mode = problem
+                .mode(least - TANGENTS_ERROR, &tangent)
+                .filter(enough)?;
             let place = mode.estimate.at.len() - 1;
             let deviation = mode.estimate.components.covariance()[(place, place)].sqrt();
             let value = mode.estimate.at[place];
@@ -155,6 +181,7 @@ impl Joint {
         let (mode, outliers) = problem.without_outliers(mode)?;
         Some(Self {
             known: known.to_vec(),
+            parameters: problem.parameters().to_vec(),
             first: problem.first,
             data: mode.data,
             estimate: mode.estimate,
@@ -211,9 +238,7 @@ impl Joint {
     fn reduced_chi2(&self, measured: usize) -> Option<f64> {
         let Self { data, tangent, .. } = self;
         let weights = data.weights(|row| data.within[row].value);
-        let told = data.within[..measured]
-            .iter()
-            .all(|within| within.freedom > 0.0);
+        let told = data.has_errors();
         let end = minimise(
             tangent,
             &data.values,

@@ -2,12 +2,13 @@
 
 use std::fmt;
 
+use super::agreement::Agreement;
 use super::explanations::Explanation;
 use super::goodness::Goodness;
 use super::systematics::{CERTAIN_ODDS, Systematics};
 use crate::evidence::{Evidence, Pair};
 use crate::fit::parameter::Parameter;
-use crate::fit::{CampaignFit, FitWarning, Intervals};
+use crate::fit::{CampaignFit, FitWarning, Intervals, short_name as short};
 use crate::nuisance::scan::ALIKE;
 
 /// What to do with an answer.
@@ -54,6 +55,13 @@ const CAUTION_PULL: f64 = 2.5;
 const HIGHEST_PULL: f64 = 3.0;
 /// Standard errors of a run's length scale that are worth a caution.
 const RUN_SCALE: f64 = 4.0;
+/// Misfit of the largest value, as a share, that is worth a caution, and that makes an answer useless.
+const MISFITS: f64 = 0.005;
+const HOPELESS: f64 = 0.03;
+/// Half widths between an explanation's estimate and the recommended one that are worth a caution.
+const FAR_OFF: f64 = 1.5;
+/// Chance of a Y or a net turn common to all runs that is worth a caution.
+const COMMON: f64 = 1e-3;
 /// Velocity of the fluid \[m/s\] that is worth a caution.
 const DRIFT: f64 = 8e-5;
 /// An interval that is wider than this share of its middle says little.
@@ -61,18 +69,25 @@ const WIDE: f64 = 0.3;
 /// Fewer runs leave little to test.
 const FEW_RUNS: usize = 3;
 
+/// Standard deviations of the difference between two estimates from which on they disagree, and from which on that with systematic
+/// errors contradicts itself: the simpler one is then recommended.
+const DISAGREE: f64 = 3.5;
+const CONTRADICT: f64 = 30.0;
+
 /// The paper's fit, unless it or the likelihood's estimate disagrees with what lets systematic errors move.
 pub(super) fn headline(
     found: &CampaignFit,
     evidence: Option<&Evidence>,
     systematics: Option<&Systematics>,
+    agreement: Option<Agreement>,
 ) -> Headline {
     let fit = &found.fit;
     let paper = Pair {
         sphere_radius: fit.sphere_radius,
         chi: fit.chi,
     };
-    let Some(systematics) = systematics else {
+    let contradicts = agreement.is_some_and(|agreement| agreement.deviations > CONTRADICT);
+    let Some(systematics) = systematics.filter(|_| !contradicts) else {
         return Headline {
             by: "paper",
             estimate: paper,
@@ -93,12 +108,6 @@ pub(super) fn headline(
     }
 }
 
-/// Whether both parameters' intervals have something in common.
-fn overlap(a: &Intervals, b: &Intervals) -> bool {
-    let common = |a: [f64; 2], b: [f64; 2]| a[0] <= b[1] && b[0] <= a[1];
-    common(a.sphere_radius, b.sphere_radius) && common(a.chi, b.chi)
-}
-
 /// m as mm, rad as degrees, the rest as it is.
 fn readable(unit: &str, value: f64) -> String {
     match unit {
@@ -109,12 +118,6 @@ fn readable(unit: &str, value: f64) -> String {
     }
 }
 
-/// A file by its name.
-fn short(file: &std::path::Path) -> String {
-    let name = file.file_name().unwrap_or(file.as_os_str());
-    name.to_string_lossy().into_owned()
-}
-
 pub(super) fn verdict(
     found: &CampaignFit,
     evidence: Option<&Evidence>,
@@ -122,6 +125,7 @@ pub(super) fn verdict(
     systematics: Option<&Systematics>,
     explanations: &[Explanation],
     headline: &Headline,
+    agreement: Option<Agreement>,
 ) -> (Verdict, Vec<String>) {
     let mut reasons: Vec<(Verdict, String)> = Vec::new();
     let mut say = |verdict: Verdict, reason: String| reasons.push((verdict, reason));
@@ -134,24 +138,30 @@ pub(super) fn verdict(
     }
     rivals(explanations, &mut say);
     of_runs(found, goodness, &mut say);
-    if systematics.is_some_and(|systematics| disagree(found, evidence, systematics)) {
-        say(
-            Verdict::Caution,
-            format!(
-                "the estimates disagree: the statistical intervals and those with systematic errors do not overlap; recommended is that {}",
-                if headline.by == "paper" {
-                    "of the paper"
-                } else {
-                    "with systematic errors"
-                }
-            ),
-        );
-    }
+    of_agreement(agreement, headline, &mut say);
     of_widths(found, evidence, headline, &mut say);
+    of_explanations(explanations, headline, &mut say);
+    let verdict = reasons.iter().map(|(verdict, _)| *verdict).max();
+    let verdict = verdict.unwrap_or(Verdict::Trust);
+    name_the_best(explanations, verdict, &mut reasons);
     reasons.sort_by_key(|(verdict, _)| std::cmp::Reverse(*verdict));
-    let verdict = reasons
-        .first()
-        .map_or(Verdict::Trust, |(verdict, _)| *verdict);
+    let misfit = goodness.misfit.filter(|misfit| misfit.share > MISFITS);
+    let verdict = misfit.map_or(verdict, |misfit| {
+        let of_misfit = if misfit.share > HOPELESS {
+            Verdict::DoNotUse
+        } else {
+            Verdict::Caution
+        };
+        let reason = format!(
+            "the model does not fit: {} of the runs misses it by {:.1} % of the largest, {:.0} times its scatter, whatever of the known \
+             errors is let move",
+            misfit.quantity,
+            100.0 * misfit.share,
+            misfit.ratio
+        );
+        reasons.insert(0, (of_misfit, reason));
+        verdict.max(of_misfit)
+    });
     (
         verdict,
         reasons.into_iter().map(|(_, reason)| reason).collect(),
@@ -233,25 +243,75 @@ fn of_runs(found: &CampaignFit, goodness: &Goodness, say: &mut impl FnMut(Verdic
             );
         }
     }
-    if found.runs.len() < FEW_RUNS {
+    for common in goodness
+        .common
+        .iter()
+        .filter(|common| common.chance < COMMON)
+    {
+        let told = |value: f64| {
+            if common.quantity == "Y/X" {
+                format!("{value:+.4}")
+            } else {
+                format!("{:+.3}°", value.to_degrees())
+            }
+        };
         say(
             Verdict::Caution,
             format!(
-                "{} run(s) leave nothing to test the model by",
-                found.runs.len()
+                "all runs have {} {} ± {} beyond the model: something is not symmetric that no file names (servos unlike each other, \
+                 an axis of the cameras that is not square)",
+                common.quantity,
+                told(common.mean),
+                told(common.error).trim_start_matches('+'),
             ),
         );
     }
+    let repeated: usize = goodness
+        .repeats
+        .iter()
+        .map(|same| same.runs.len() - 1)
+        .sum();
+    let gaits = found.runs.len() - repeated;
+    if gaits < FEW_RUNS {
+        let reason = if repeated > 0 {
+            format!("{gaits} gait(s), repeated, leave nothing to test the model by")
+        } else {
+            format!("{gaits} run(s) leave nothing to test the model by")
+        };
+        say(Verdict::Caution, reason);
+    }
 }
 
-/// Whether the statistical intervals have nothing in common with those with systematics.
-fn disagree(found: &CampaignFit, evidence: Option<&Evidence>, systematics: &Systematics) -> bool {
-    let statistical = [
-        Some(&found.fit.intervals),
-        evidence.map(|evidence| &evidence.likelihood.intervals),
-    ];
-    let mut others = statistical.into_iter().flatten();
-    others.any(|other| !overlap(other, &systematics.intervals))
+/// Estimates that differ by more than the errors of both, systematic ones included.
+fn of_agreement(
+    agreement: Option<Agreement>,
+    headline: &Headline,
+    say: &mut impl FnMut(Verdict, String),
+) {
+    let Some(Agreement { deviations }) = agreement.filter(|a| a.deviations > DISAGREE) else {
+        return;
+    };
+    if deviations > CONTRADICT {
+        say(
+            Verdict::DoNotUse,
+            format!(
+                "the estimate with systematic errors contradicts the others by {deviations:.0} times what all their errors allow: it \
+                 is not recommended, and the paper's is not confirmed"
+            ),
+        );
+        return;
+    }
+    say(
+        Verdict::Caution,
+        format!(
+            "the estimates disagree: they differ by {deviations:.1} times what scatter and systematic errors allow; recommended is that {}",
+            if headline.by == "paper" {
+                "of the paper"
+            } else {
+                "with systematic errors"
+            }
+        ),
+    );
 }
 
 /// What is hardly known.
@@ -274,8 +334,12 @@ fn of_widths(
         }
     }
     for warning in &found.fit.warnings {
-        if let FitWarning::Ridge { .. } = warning {
-            say(Verdict::Caution, warning.to_string());
+        match warning {
+            FitWarning::Ridge { .. } | FitWarning::NoErrors => {
+                say(Verdict::Caution, warning.to_string());
+            }
+            FitWarning::SameRecording { .. } => say(Verdict::DoNotUse, warning.to_string()),
+            _ => {}
         }
     }
     let open = |evidence: &Evidence| evidence.profiles.iter().any(|p| p.open.contains(&true));
@@ -327,6 +391,76 @@ fn pulls(systematics: &Systematics, say: &mut impl FnMut(Verdict, String)) {
 /// Growth of the log-likelihood from which on an explanation is one.
 const EXPLAINS: f64 = 10.0;
 
+/// An explanation whose r_s and χ are not those that are recommended.
+fn of_explanations(
+    explanations: &[Explanation],
+    headline: &Headline,
+    say: &mut impl FnMut(Verdict, String),
+) {
+    let Some(best) = explanations.first().filter(|best| best.worth() > EXPLAINS) else {
+        return;
+    };
+    let beyond = |[low, high]: [f64; 2], value: f64| {
+        let half = (high - low) / 2.0;
+        (value - f64::midpoint(low, high)).abs() / half
+    };
+    let Intervals {
+        sphere_radius, chi, ..
+    } = headline.intervals;
+    let off =
+        beyond(sphere_radius, best.estimate.sphere_radius).max(beyond(chi, best.estimate.chi));
+    if off > FAR_OFF {
+        say(
+            Verdict::Caution,
+            format!(
+                "{}, which explains the runs best by itself, would have r_s {:.2} mm and chi {:.3}: {off:.1} half widths from the \
+                 middle of the recommended intervals",
+                described(best),
+                1e3 * best.estimate.sphere_radius,
+                best.estimate.chi
+            ),
+        );
+    }
+}
+
+/// Whether one explanation is the other with the servos apart: `gain` and `gain of each servo`.
+fn are_kin(a: &Explanation, b: &Explanation) -> bool {
+    a.name.starts_with(b.name) || b.name.starts_with(a.name)
+}
+
+/// An explanation with its values.
+fn described(explanation: &Explanation) -> String {
+    let values: Vec<String> = explanation
+        .parameters
+        .iter()
+        .map(|parameter| readable(parameter.unit, parameter.value))
+        .collect();
+    format!(
+        "{} ({}; log-likelihood +{:.0})",
+        explanation.name,
+        values.join(", "),
+        explanation.gain
+    )
+}
+
+/// Names the explanation that is likeliest by itself, and the next one, unless a reason does already.
+fn name_the_best(
+    explanations: &[Explanation],
+    verdict: Verdict,
+    reasons: &mut Vec<(Verdict, String)>,
+) {
+    let mut likely = explanations.iter().filter(|one| one.worth() > EXPLAINS);
+    let Some(best) = likely.next().filter(|_| verdict > Verdict::Trust) else {
+        return;
+    };
+    let next = likely.find(|other| !are_kin(best, other)).map_or_else(
+        || "nothing else that was tried does".to_owned(),
+        |next| format!("next comes {}", described(next)),
+    );
+    let reason = format!("the runs are explained best by {}; {next}", described(best));
+    reasons.insert(0, (verdict, reason));
+}
+
 /// Explanations that the runs do not tell apart.
 fn rivals(explanations: &[Explanation], say: &mut impl FnMut(Verdict, String)) {
     let Some(best) = explanations.first().filter(|best| best.gain > EXPLAINS) else {
@@ -337,7 +471,7 @@ fn rivals(explanations: &[Explanation], say: &mut impl FnMut(Verdict, String)) {
         .iter()
         .skip(1)
         .filter(alike)
-        .filter(|other| !(best.name.starts_with("gain") && other.name.starts_with("gain")))
+        .filter(|other| !are_kin(best, other))
         .map(|other| format!("{} (+{:.1})", other.name, other.gain))
         .collect();
     if !rivals.is_empty() {

@@ -11,13 +11,14 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
+use statrs::distribution::{ContinuousCDF, Normal};
 
 use super::EvidenceOptions;
 use super::surface::Surface;
 use crate::fit::WEIGHTS;
 use crate::least_squares::{Model as _, minimise};
 use crate::quantities::QUANTITIES;
+use crate::student;
 
 /// From fewer runs it says nothing.
 pub(super) const ENOUGH_RUNS: usize = 5;
@@ -84,8 +85,7 @@ pub(super) fn bootstrap(
         })
         .collect();
     let count = runs.len() as f64;
-    let student = StudentsT::new(0.0, 1.0, count - 1.0).ok()?;
-    let reach = (count / (count - 1.0)).sqrt() * student.inverse_cdf(f64::midpoint(1.0, level));
+    let reach = (count / (count - 1.0)).sqrt() * student::quantile(count - 1.0, level)?;
     let interval = |parameter: usize| {
         accelerated(
             draws.iter().map(|at| at[parameter]).collect(),

@@ -82,8 +82,9 @@ impl LikelihoodProblem {
         None
     }
 
-    /// Cycles as the bootstrap draws them.
-    pub(super) fn drawn(&self, cycles: &Cycles) -> bootstrap::Drawn {
+    /// Cycles of a run as the bootstrap draws them; of repeats the first stands for all, with their mean.
+    pub(super) fn drawn(&self, run: usize, cycles: &Cycles) -> bootstrap::Drawn {
+        let row = |q: usize| QUANTITIES * run + q;
         let of_cycles = |of: fn(&Cycle) -> f64| cycles.cycles.iter().map(of).collect();
         let of_steps = |of: fn(&Pose<f64>) -> f64| {
             let steps = cycles.cycles.iter().filter_map(|c| c.step.as_ref());
@@ -97,7 +98,6 @@ impl LikelihoodProblem {
             of_steps(|step| step.theta),
         ];
         let statistics = measured(cycles);
-        let finite = |value: f64| if value.is_finite() { value } else { 0.0 };
         let deviations = |q: usize| {
             let Statistics {
                 mean,
@@ -116,8 +116,8 @@ impl LikelihoodProblem {
                 .collect()
         };
         bootstrap::Drawn {
-            means: std::array::from_fn(|q| finite(statistics[q].mean / self.data.scales[q])),
-            there: statistics.map(|s| s.mean.is_finite()),
+            means: std::array::from_fn(|q| self.data.values[row(q)]),
+            there: std::array::from_fn(|q| self.data.used[row(q)]),
             deviations: std::array::from_fn(deviations),
         }
     }
@@ -129,11 +129,12 @@ impl LikelihoodProblem {
             }
             let scale = self.data.scales[row % QUANTITIES];
             let standard_error = estimate.components.variance(row).sqrt();
-            let residual = estimate.residuals[row];
+            let predicted = self.data.values[row] + estimate.residuals[row];
+            let residual = predicted - self.data.own[row];
             RunError {
-                measured: self.data.values[row] * scale,
-                predicted: (self.data.values[row] + residual) * scale,
-                within: self.data.within[row].value.sqrt() * scale,
+                measured: self.data.own[row] * scale,
+                predicted: predicted * scale,
+                within: self.data.own_within[row].value.sqrt() * scale,
                 standard_error: standard_error * scale,
                 standardised: residual / standard_error,
             }
@@ -152,13 +153,11 @@ impl LikelihoodProblem {
     ) -> Vec<WithoutRun> {
         let likelihood = leave_one_out::leave_one_out(surface, data, at);
         let runs = likelihood.len();
-        let there: Vec<bool> = (0..self.data.values.len())
-            .map(|row| self.data.is_there(row))
-            .collect();
+        let there = &self.data.used;
         let paper = |left_out: usize| {
             let mut weights = vec![1.0; runs];
             weights[left_out] = 0.0;
-            bootstrap::papers_fit(surface, (&self.data.values, &there), &weights, self.paper)
+            bootstrap::papers_fit(surface, (&self.data.values, there), &weights, self.paper)
         };
         likelihood
             .into_iter()

@@ -2,13 +2,12 @@
 
 use std::f64::consts::TAU;
 
-use statrs::distribution::{ContinuousCDF, FisherSnedecor, StudentsT};
-
 use super::surface::Surface;
 use super::{Contour, Profile, Ridge};
 use crate::fit::likelihood::Estimate;
 use crate::fit::run_values::RunValues;
 use crate::least_squares::{Model as _, minimise};
+use crate::student;
 
 /// Points of a profile.
 const POINTS: usize = 61;
@@ -71,8 +70,7 @@ pub(super) fn profile(
     level: f64,
 ) -> Option<Profile> {
     let variance = estimate.components.of_parameter(parameter);
-    let student = StudentsT::new(0.0, 1.0, variance.freedom).ok()?;
-    let quantile = student.inverse_cdf(0.5 + level / 2.0);
+    let quantile = student::quantile(variance.freedom, level)?;
     let threshold = -quantile * quantile / 2.0;
     let centre = estimate.at[parameter];
     let (low, high) = (
@@ -132,10 +130,7 @@ pub(super) fn ridge(
         .of_parameter(0)
         .freedom
         .min(estimate.components.of_parameter(1).freedom);
-    let threshold = |level: f64| {
-        let quantile = FisherSnedecor::new(2.0, freedom).ok()?.inverse_cdf(level);
-        Some(-quantile)
-    };
+    let threshold = |level: f64| -student::fisher_of_two(freedom, level);
     let outer = LEVELS.iter().copied().fold(0.0, f64::max);
     let root = covariance.clone().cholesky()?.l();
     let ray = |angle: f64, length: f64| {
@@ -146,7 +141,7 @@ pub(super) fn ridge(
         ]
     };
     let contour = |level: f64| {
-        let threshold = threshold(level)?;
+        let threshold = threshold(level);
         let corner = |i: usize| {
             let angle = TAU * i as f64 / CORNERS as f64;
             let (mut inside, mut outside) = (0.0, 4.0 * (-2.0 * threshold).sqrt());
@@ -163,17 +158,14 @@ pub(super) fn ridge(
             let at = ray(angle, inside);
             (scale.natural(0, at[0]), scale.natural(1, at[1]))
         };
-        Some(Contour {
+        Contour {
             level,
             threshold,
             corners: (0..CORNERS).map(corner).collect(),
-        })
+        }
     };
-    let contours = LEVELS
-        .iter()
-        .map(|level| contour(*level))
-        .collect::<Option<Vec<_>>>()?;
-    let wide = 1.3 * (-2.0 * threshold(outer)?).sqrt();
+    let contours = LEVELS.iter().map(|level| contour(*level)).collect();
+    let wide = 1.3 * (-2.0 * threshold(outer)).sqrt();
     let axis = |parameter: usize| -> Vec<f64> {
         let half = wide * covariance[(parameter, parameter)].sqrt();
         let centre = estimate.at[parameter];

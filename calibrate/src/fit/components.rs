@@ -38,13 +38,16 @@ impl Components {
         // What residuals of one quantity owe to the errors of another.
         let mut owed = DMatrix::<f64>::zeros(QUANTITIES, QUANTITIES);
         let mut sums = DVector::<f64>::zeros(QUANTITIES);
+        let mut squares = [0.0; QUANTITIES];
         let mut traces = [0.0; QUANTITIES];
+        let mut unknown = [false; QUANTITIES];
         for k in (0..rows).filter(|k| weights.get(*k).is_some_and(|w| *w > 0.0)) {
             let Some(q) = quantity(&within, k) else {
                 continue;
             };
-            sums[q] += residuals.get(k)?.powi(2);
+            squares[q] += residuals.get(k)?.powi(2);
             traces[q] += left[(k, k)];
+            unknown[q] |= within.get(k).is_some_and(|within| !within.is_known());
             for (l, error) in within.iter().enumerate() {
                 let share = left[(k, l)].powi(2);
                 sums[q] -= share * error.value;
@@ -53,13 +56,28 @@ impl Components {
                 }
             }
         }
+        for (sum, squares) in sums.iter_mut().zip(squares) {
+            *sum += squares;
+        }
         let freedom = std::array::from_fn(|q| (traces[q].powi(2) / owed[(q, q)]).max(1.0));
+        let mut between = non_negative(&owed, &sums);
+        for (q, between) in between.iter_mut().enumerate() {
+            // Values without an error are as sure as they fit.
+            if unknown[q] && *between <= 0.0 && traces[q] > 0.0 {
+                *between = squares[q] / traces[q];
+            }
+        }
         Some(Self {
-            between: non_negative(&owed, &sums),
+            between,
             freedom,
             within,
             gain,
         })
+    }
+
+    /// Whether residual `row` is a value of a run, and not something known beforehand.
+    pub(crate) fn is_of_run(&self, row: usize) -> bool {
+        quantity(&self.within, row).is_some()
     }
 
     /// Variance of residual `row`.

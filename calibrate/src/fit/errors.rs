@@ -2,6 +2,8 @@
 //!
 //! Their variance comes from as few as four cycles, so it is itself uncertain: the runs' variances are drawn towards what they
 //! have in common, by as much as their own scatter allows (Smyth's moderated variances, Stat. Appl. Genet. Mol. Biol. 3, 2004).
+//! Two cycles can agree by chance, so the noise of the cameras is a floor under each variance, and a run of two or three cycles
+//! is pooled with the others at least up to [`LEAST_FREEDOM`] degrees of freedom.
 //! Steps X of neighbouring cycles share one, so camera noise makes them vary against each other and a drifting tank with each
 //! other; their lag-1 correlation is pooled over the runs.
 //!
@@ -10,6 +12,7 @@
 use statrs::function::gamma::digamma;
 
 use crate::cycles::Statistics;
+use crate::median::median;
 use crate::quantities::{QUANTITIES, TELLING};
 
 /// A squared standard error and how many degrees of freedom it rests on.
@@ -25,13 +28,37 @@ const ROUNDING: f64 = 1e-12;
 /// Freedom of a variance that is common to all runs as far as anybody can tell.
 pub(super) const MOST_FREEDOM: f64 = 1e4;
 
-/// Variances of the means of X, ΔY, Δθ, run by run, from the deviations between cycles.
-pub(crate) fn within_runs(measured: &[[Statistics; QUANTITIES]]) -> Vec<[Variance; QUANTITIES]> {
+/// Degrees of freedom of a run's variance, at least: its own and those that it shares with other runs.
+const LEAST_FREEDOM: f64 = 3.0;
+
+impl Variance {
+    /// Whether it rests on any scatter or stated error. If not, `value` is a lower bound.
+    pub(crate) fn is_known(self) -> bool {
+        self.freedom > 0.0
+    }
+}
+
+/// Variances of a run's values from other sources than the scatter between its cycles.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct RunErrors {
+    /// Of the model's values by errors of measured joint angles: they add to the variance of the mean.
+    pub(crate) path: [f64; QUANTITIES],
+    /// Of a single cycle by the noise of the cameras: a floor under the scatter between cycles.
+    pub(crate) noise: [f64; QUANTITIES],
+}
+
+/// Variances of the means of X, ΔY, Δθ, run by run, from the deviations between cycles, none below the noise of the cameras.
+pub(crate) fn within_runs(
+    measured: &[[Statistics; QUANTITIES]],
+    errors: &[RunErrors],
+) -> Vec<[Variance; QUANTITIES]> {
     let nothing = Variance {
         value: 0.0,
         freedom: 0.0,
     };
     let mut out = vec![[nothing; QUANTITIES]; measured.len()];
+    // Scatter over noise of those quantities that show both.
+    let mut excess: Vec<f64> = Vec::new();
     for quantity in 0..QUANTITIES {
         let of_runs: Vec<Statistics> = measured.iter().map(|run| run[quantity]).collect();
         let sizes = of_runs.iter().map(|s| s.mean.abs());
@@ -43,9 +70,28 @@ pub(crate) fn within_runs(measured: &[[Statistics; QUANTITIES]]) -> Vec<[Varianc
         } else {
             0.0
         };
-        for (out, variance) in out.iter_mut().zip(moderated(&of_runs, ROUNDING * largest)) {
+        let rounding = (ROUNDING * largest).powi(2);
+        let floors: Vec<f64> = errors
+            .iter()
+            .map(|errors| errors.noise[quantity].max(rounding))
+            .collect();
+        let variances = moderated(&of_runs, &floors);
+        let seen = variances.iter().zip(errors).zip(&of_runs);
+        excess.extend(
+            seen.filter(|((variance, errors), s)| {
+                variance.is_known() && s.count > 1 && errors.noise[quantity] > 0.0
+            })
+            .map(|((variance, errors), _)| variance.value / errors.noise[quantity]),
+        );
+        for (out, variance) in out.iter_mut().zip(variances) {
             out[quantity] = variance;
         }
+        let stated = median(
+            of_runs
+                .iter()
+                .filter(|s| states_error(s))
+                .map(|s| s.se.powi(2)),
+        );
         for (out, s) in out.iter_mut().zip(&of_runs) {
             if s.mean.is_nan() {
                 // Not there: it has no weight.
@@ -55,10 +101,18 @@ pub(crate) fn within_runs(measured: &[[Statistics; QUANTITIES]]) -> Vec<[Varianc
                 };
                 continue;
             }
-            if s.sd.is_nan() && s.se.is_finite() {
+            if states_error(s) {
                 out[quantity] = Variance {
                     value: s.se.powi(2),
                     freedom: MOST_FREEDOM,
+                };
+                continue;
+            }
+            if let (Some(value), false) = (stated, out[quantity].is_known()) {
+                // As sure as the runs that state an error.
+                out[quantity] = Variance {
+                    value,
+                    freedom: 1.0,
                 };
                 continue;
             }
@@ -68,7 +122,25 @@ pub(crate) fn within_runs(measured: &[[Statistics; QUANTITIES]]) -> Vec<[Varianc
             out[quantity].value *= inflation.max(1.0 / n) / n;
         }
     }
+    // A quantity of which each run has a single value scatters over its noise as the others do.
+    if let Some(excess) = median(excess.into_iter()) {
+        for (variances, errors) in out.iter_mut().zip(errors) {
+            for (variance, noise) in variances.iter_mut().zip(errors.noise) {
+                if !variance.is_known() && noise > 0.0 {
+                    *variance = Variance {
+                        value: variance.value * excess.max(1.0),
+                        freedom: 1.0,
+                    };
+                }
+            }
+        }
+    }
     out
+}
+
+/// Whether a value came with an error and without cycles.
+fn states_error(s: &Statistics) -> bool {
+    s.sd.is_nan() && s.se.is_finite()
 }
 
 /// The lag-1 correlation of all runs together, freed of the bias −1/n that a run's own mean brings.
@@ -89,40 +161,46 @@ fn common_lag(runs: &[Statistics]) -> f64 {
     }
 }
 
-/// Variances of single cycles, drawn towards each other.
-fn moderated(runs: &[Statistics], least_sd: f64) -> Vec<Variance> {
+/// Variances of single cycles, drawn towards each other, none below its floor.
+fn moderated(runs: &[Statistics], floors: &[f64]) -> Vec<Variance> {
     let samples: Vec<(f64, f64)> = runs
         .iter()
-        .filter(|s| s.count > 1 && !s.sd.is_nan())
-        .map(|s| (s.sd.max(least_sd).powi(2), s.count as f64 - 1.0))
+        .zip(floors)
+        .filter(|(s, _)| s.count > 1 && !s.sd.is_nan())
+        .map(|(s, floor)| (s.sd.powi(2).max(*floor), s.count as f64 - 1.0))
         .collect();
     let Some(prior) = prior(&samples) else {
-        return vec![
-            Variance {
-                value: least_sd.powi(2),
-                freedom: 0.0
-            };
-            runs.len()
-        ];
+        let unknown = |floor: &f64| Variance {
+            value: *floor,
+            freedom: 0.0,
+        };
+        return floors.iter().map(unknown).collect();
     };
-    let posterior = |s: &Statistics| {
+    let posterior = |(s, floor): (&Statistics, &f64)| {
         let own = if s.sd.is_nan() {
             0.0
         } else {
             (s.count as f64 - 1.0).max(0.0)
         };
-        let freedom = own + prior.freedom;
-        let sum = own * s.sd.max(least_sd).powi(2) + prior.freedom * prior.value;
+        let shared = if samples.len() > 1 {
+            prior.freedom.max(LEAST_FREEDOM - own)
+        } else {
+            prior.freedom
+        };
+        let freedom = own + shared;
+        let sum = own * s.sd.powi(2).max(*floor) + shared * prior.value;
+        // A single value has no deviation: NaN times nothing.
+        let sum = if own > 0.0 { sum } else { shared * prior.value };
         Variance {
             value: if freedom > 0.0 {
-                sum / freedom
+                (sum / freedom).max(*floor)
             } else {
-                prior.value
+                prior.value.max(*floor)
             },
             freedom: freedom.max(1.0),
         }
     };
-    runs.iter().map(posterior).collect()
+    runs.iter().zip(floors).map(posterior).collect()
 }
 
 /// What the runs' variances have in common: a scaled inverse χ² distribution, by the moments of their logarithms.
@@ -158,7 +236,10 @@ fn prior(samples: &[(f64, f64)]) -> Option<Variance> {
 /// ψ′(x) for x > 0, by its recurrence and asymptotic series.
 fn trigamma(mut x: f64) -> f64 {
     let mut sum = 0.0;
-    while x < 10.0 {
+    for _ in 0..10 {
+        if x >= 10.0 {
+            break;
+        }
         sum += 1.0 / (x * x);
         x += 1.0;
     }
@@ -220,7 +301,7 @@ mod tests {
         let alike: Vec<Statistics> = (0..6)
             .map(|i| statistics(&[1.0, 2.0 + 0.01 * f64::from(i), 3.0, 4.0]))
             .collect();
-        let pooled = moderated(&alike, 1e-9);
+        let pooled = moderated(&alike, &[1e-18; 6]);
         assert!(pooled.iter().all(|v| v.freedom > 100.0), "{pooled:?}");
         let unlike: Vec<Statistics> = (0..6)
             .map(|i| {
@@ -228,9 +309,55 @@ mod tests {
                 statistics(&[1.0, 1.0 + scale, 1.0 - scale, 1.0 + 2.0 * scale])
             })
             .collect();
-        let own = moderated(&unlike, 1e-9);
+        let own = moderated(&unlike, &[1e-18; 6]);
         assert!(own.iter().all(|v| v.freedom < 6.0), "{own:?}");
         assert!(own[5].value > 1e6 * own[0].value);
+    }
+
+    /// Two cycles that agree to the last digit weigh no more than the cameras' noise and the other runs allow.
+    #[test]
+    fn cycles_that_agree_by_chance_do_not_make_a_value_certain() {
+        let runs: Vec<[Statistics; QUANTITIES]> = [0.0, 1e-9, 2e-4, 3e-4]
+            .iter()
+            .map(|apart| [statistics(&[0.01, 0.01 + apart]); QUANTITIES])
+            .collect();
+        let errors = RunErrors {
+            noise: [1e-10; QUANTITIES],
+            ..RunErrors::default()
+        };
+        let found = within_runs(&runs, &[errors; 4]);
+        for run in &found {
+            for variance in run {
+                assert!(variance.value > 4e-11, "{variance:?}");
+                assert!(variance.freedom >= LEAST_FREEDOM, "{variance:?}");
+            }
+        }
+        let ratio = found[3][0].value / found[0][0].value;
+        assert!(ratio < 100.0, "{ratio}");
+    }
+
+    /// Two cycles have one step: its variance follows from the noise and from what the amplitudes scatter beyond theirs.
+    #[test]
+    fn a_single_step_scatters_as_amplitudes_do() {
+        let mut run = [statistics(&[0.01, 0.0102]); QUANTITIES];
+        run[0] = Statistics {
+            sd: f64::NAN,
+            se: f64::NAN,
+            count: 1,
+            ..run[0]
+        };
+        let errors = RunErrors {
+            noise: [1e-9; QUANTITIES],
+            ..RunErrors::default()
+        };
+        let found = within_runs(&[run; 3], &[errors; 3]);
+        assert!(found[0][0].is_known(), "{:?}", found[0][0]);
+        // Noise and excess are alike, but the amplitude is a mean of two cycles.
+        let ratio = found[0][0].value / found[0][1].value;
+        assert!((ratio - 2.0).abs() < 1e-9, "{ratio}");
+        // Without noise nothing is known of it.
+        let unknown = within_runs(&[run; 3], &[RunErrors::default(); 3]);
+        assert!(!unknown[0][0].is_known() && unknown[0][1].is_known());
     }
 
     #[test]

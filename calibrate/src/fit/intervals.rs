@@ -1,12 +1,11 @@
 //! How sure is it? Intervals from the curvature at the optimum.
 
-use statrs::distribution::{ContinuousCDF, StudentsT};
-
 use super::components::Components;
 use super::errors::Variance;
 use super::outliers::{self, Unlike};
 use super::run_values::RunValues;
 use crate::least_squares::{Minimum, weighted};
+use crate::student;
 
 /// Intervals of both parameters.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
@@ -34,10 +33,9 @@ impl Intervals {
     }
 }
 
-/// How far an interval of this level reaches to either side.
+/// Half width of an interval of this level.
 pub(crate) fn half_width(variance: Variance, level: f64) -> Option<f64> {
-    let student = StudentsT::new(0.0, 1.0, variance.freedom).ok()?;
-    Some(student.inverse_cdf(0.5 + level / 2.0) * variance.value.sqrt())
+    Some(student::quantile(variance.freedom, level)? * variance.value.sqrt())
 }
 
 pub(super) struct Spread {
@@ -81,6 +79,10 @@ pub(super) fn spread(
         condition: singular.max() / singular.min(),
         correlation,
         outlier,
-        misfit: if ratio.is_finite() { ratio } else { 0.0 },
+        misfit: if ratio.is_finite() && data.has_errors() {
+            ratio
+        } else {
+            0.0
+        },
     })
 }

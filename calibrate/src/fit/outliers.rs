@@ -3,11 +3,11 @@
 //! (`evidence/deletion.rs`) does the same without the shortcut and goes on without the value.
 
 use nalgebra::{DMatrix, DVector};
-use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::components::Components;
 use super::errors::Variance;
 use crate::quantities::QUANTITIES;
+use crate::student;
 
 /// Chance that some value of a campaign without fault is called an outlier.
 pub(crate) const FALSE_ALARM: f64 = 0.01;
@@ -74,8 +74,8 @@ pub(crate) fn chance(
     } else {
         others.freedom[row % QUANTITIES].min(others.within.get(row)?.freedom)
     };
-    let student = StudentsT::new(0.0, 1.0, freedom.max(1.0)).ok()?;
-    Some((2.0 * student.sf(standard_errors.abs()) * looks as f64).min(1.0))
+    let chance = student::two_sided(freedom.max(1.0), standard_errors);
+    (!chance.is_nan()).then(|| (chance * looks as f64).min(1.0))
 }
 
 #[cfg(test)]

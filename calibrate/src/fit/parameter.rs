@@ -17,6 +17,8 @@ pub(crate) enum Parameter {
     BackOffset,
     /// The servos' dead band \[rad\].
     DeadBand,
+    /// The front servo's dead band less the back one's \[rad\]; their mean is [`Self::DeadBand`] or the swimmer file's.
+    DeadBandDifference,
     /// By how much the front joint is later than the back one \[s\].
     FrontLag,
     /// Place of the reflectors' middle along the middle link, over L.
@@ -39,6 +41,20 @@ pub(crate) enum Parameter {
     Scale,
     /// The period over the commanded one, less 1.
     Period,
+    /// Length of the middle link over that of the swimmer file, less it, over L.
+    MiddleLength,
+    /// The same of the front link.
+    FrontLength,
+    /// The same of the back link.
+    BackLength,
+    /// ln of the float's rotational drag over that of a sphere with its drag against translation.
+    FloatTurning,
+    /// Stretch of the cameras' view along its x, which is lost along y: tilted cameras, pixels that are not square.
+    StretchSquare,
+    /// The same along the diagonal.
+    StretchDiagonal,
+    /// Distortion of the lens: stretch at the runs' mean distance from their centre.
+    Distortion,
 }
 
 impl Parameter {
@@ -54,10 +70,17 @@ impl Parameter {
             | Self::MarkerAngle
             | Self::FrontLink
             | Self::BackLink => (-0.35, 0.35),
-            Self::Gain | Self::FrontGain | Self::BackGain | Self::Scale | Self::Period => {
-                (-0.3, 0.3)
-            }
+            Self::Gain
+            | Self::FrontGain
+            | Self::BackGain
+            | Self::Scale
+            | Self::Period
+            | Self::Distortion => (-0.3, 0.3),
+            Self::MiddleLength | Self::FrontLength | Self::BackLength => (-0.05, 0.05),
+            Self::FloatTurning => (-(10_f64.ln()), 10_f64.ln()),
+            Self::StretchSquare | Self::StretchDiagonal => (-0.1, 0.1),
             Self::DeadBand => (0.0, 0.35),
+            Self::DeadBandDifference => (-0.35, 0.35),
             Self::FrontLag => (-1.0, 1.0),
             Self::MarkerAlong | Self::MarkerAcross => (-reach, reach),
         }
@@ -73,7 +96,11 @@ impl Parameter {
 
     /// Whether it is about what servos make of a command, and nothing where the angles themselves were measured.
     pub(crate) fn is_of_command(self) -> bool {
-        self.moves_joints() || matches!(self, Self::DeadBand | Self::Period | Self::FrontLag)
+        self.moves_joints()
+            || matches!(
+                self,
+                Self::DeadBand | Self::DeadBandDifference | Self::Period | Self::FrontLag
+            )
     }
 
     /// Whether it is about measured angles, and nothing where there are none.
@@ -81,9 +108,21 @@ impl Parameter {
         matches!(self, Self::FrontLink | Self::BackLink)
     }
 
+    /// Whether it is about the view of the cameras, and the direction and place of each run in it.
+    pub(crate) fn is_of_view(self) -> bool {
+        matches!(
+            self,
+            Self::StretchSquare | Self::StretchDiagonal | Self::Distortion
+        )
+    }
+
     /// Half a difference's width. Paths have kinks in the dead band.
     pub(crate) fn step(self) -> f64 {
-        if self == Self::DeadBand { 4e-3 } else { 1e-3 }
+        match self {
+            Self::DeadBand => 4e-3,
+            Self::DeadBandDifference => 8e-3,
+            _ => 1e-3,
+        }
     }
 
     pub(crate) fn name(self) -> &'static str {
@@ -94,6 +133,7 @@ impl Parameter {
             Self::FrontOffset => "front joint offset",
             Self::BackOffset => "back joint offset",
             Self::DeadBand => "dead band",
+            Self::DeadBandDifference => "dead band difference, front less back",
             Self::FrontLag => "lag of the front joint behind the back one",
             Self::MarkerAlong => "marker offset along",
             Self::MarkerAcross => "marker offset across",
@@ -105,15 +145,28 @@ impl Parameter {
             Self::BackGain => "back gain",
             Self::Scale => "camera scale",
             Self::Period => "period",
+            Self::MiddleLength => "middle link length",
+            Self::FrontLength => "front link length",
+            Self::BackLength => "back link length",
+            Self::FloatTurning => "float's rotational drag",
+            Self::StretchSquare => "camera stretch along x",
+            Self::StretchDiagonal => "camera stretch diagonal",
+            Self::Distortion => "lens distortion",
         }
     }
 
     pub(crate) fn unit(self) -> &'static str {
         match self {
-            Self::SphereRadius | Self::MarkerAlong | Self::MarkerAcross => "m",
+            Self::SphereRadius
+            | Self::MarkerAlong
+            | Self::MarkerAcross
+            | Self::MiddleLength
+            | Self::FrontLength
+            | Self::BackLength => "m",
             Self::FrontOffset
             | Self::BackOffset
             | Self::DeadBand
+            | Self::DeadBandDifference
             | Self::MarkerAngle
             | Self::FrontLink
             | Self::BackLink => "rad",
@@ -125,17 +178,26 @@ impl Parameter {
     /// In units of people: m, rad, or the plain number.
     pub(crate) fn natural(self, value: f64, swimmer: &Swimmer<f64>) -> f64 {
         match self {
-            Self::SphereRadius | Self::MarkerAlong | Self::MarkerAcross => {
-                value * swimmer.total_length()
-            }
-            Self::Chi => value.exp(),
+            Self::SphereRadius
+            | Self::MarkerAlong
+            | Self::MarkerAcross
+            | Self::MiddleLength
+            | Self::FrontLength
+            | Self::BackLength => value * swimmer.total_length(),
+            Self::Chi | Self::FloatTurning => value.exp(),
             Self::TangentialDrag => over_viscosity(swimmer) * value.exp(),
-            Self::Gain | Self::FrontGain | Self::BackGain | Self::Scale | Self::Period => {
-                1.0 + value
-            }
+            Self::Gain
+            | Self::FrontGain
+            | Self::BackGain
+            | Self::Scale
+            | Self::Period
+            | Self::StretchSquare
+            | Self::StretchDiagonal
+            | Self::Distortion => 1.0 + value,
             Self::FrontOffset
             | Self::BackOffset
             | Self::DeadBand
+            | Self::DeadBandDifference
             | Self::MarkerAngle
             | Self::FrontLink
             | Self::BackLink

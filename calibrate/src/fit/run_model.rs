@@ -5,16 +5,19 @@
 
 use std::borrow::Cow;
 
-use nalgebra::{DMatrix, Vector2};
+use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 use swimmer_files::{ServoFile, SwimmerFile};
-use swimmer_model::{InvalidSwimmer, Pose, TangentialDrag};
+use swimmer_model::{InvalidSwimmer, Model as SwimmerModel, Pose, TangentialDrag};
 
 use super::parameter::{Parameter, over_viscosity};
 use crate::cycles::Projection;
 use crate::least_squares::Model;
-use crate::prediction::{JointPath, Played, PredictedCycle};
+use crate::prediction::{JointPath, Observation, Played, PredictedCycle, SwumCycle, View};
 use crate::quantities::{QUANTITIES, predicted};
 use crate::run::RunResult;
+
+/// Runs that swam nearer to each other \[m\] tell nothing about a lens.
+const SAME_PLACE: f64 = 0.02;
 
 /// Runs, and the parameters that may differ.
 pub(crate) struct RunModel {
@@ -50,18 +53,24 @@ impl RunModel {
         parameters: Vec<Parameter>,
     ) -> Result<Self, InvalidSwimmer> {
         let projection = Projection::new();
-        let played = |run: &RunResult| {
-            if run.played.sides.is_some() {
-                return Ok(run.played.clone());
+        let views = views(runs);
+        let played = |(run, view): (&RunResult, Option<View>)| {
+            let played = Played {
+                view,
+                ..run.played.clone()
+            };
+            if played.sides.is_some() {
+                return Ok(played);
             }
-            let heading = run.played.path.predict(&fitted.swimmer, &projection)?.1;
+            let heading = played.path.predict(&fitted.swimmer, &projection)?.1;
             Ok(Played {
                 cut_by: Some(heading),
-                ..run.played.clone()
+                ..played
             })
         };
         let runs = runs
             .iter()
+            .zip(views)
             .map(played)
             .collect::<Result<_, InvalidSwimmer>>()?;
         Ok(Self::new(start.clone(), runs, scales, parameters))
@@ -79,11 +88,16 @@ impl RunModel {
         Self::new(self.start.clone(), runs, self.scales, parameters)
     }
 
-    /// Whether a parameter moves anything: what is about servos does where a run has no measured angles.
+    /// Whether a parameter moves anything: servos do in runs without measured angles, the view of the cameras in tracked runs, and a
+    /// lens in runs that swam at different places.
     pub(crate) fn has_use_for(&self, parameter: Parameter) -> bool {
         let measured = |run: &Played| run.sides.is_some();
+        let view = |run: &Played| run.view.is_some();
+        let apart = |run: &Played| run.view.is_some_and(|view| view.place != Vector2::zeros());
         !(parameter.is_of_command() && self.runs.iter().all(measured)
-            || parameter.is_of_side_links() && !self.runs.iter().any(measured))
+            || parameter.is_of_side_links() && !self.runs.iter().any(measured)
+            || parameter.is_of_view() && !self.runs.iter().all(view)
+            || parameter == Parameter::Distortion && !self.runs.iter().any(apart))
     }
 
     /// The same with servos that do as they are told.
@@ -114,6 +128,13 @@ impl RunModel {
         if let Some(chi) = self.value(at, Parameter::Chi) {
             swimmer.chi = chi.exp();
         }
+        let length = self.start.swimmer.total_length();
+        let longer = |parameter: Parameter, link: &mut f64| {
+            *link += length * self.value(at, parameter).unwrap_or(0.0);
+        };
+        longer(Parameter::MiddleLength, &mut swimmer.links.middle);
+        longer(Parameter::FrontLength, &mut swimmer.links.front);
+        longer(Parameter::BackLength, &mut swimmer.links.back);
         if let Some(ratio) = self.value(at, Parameter::TangentialDrag) {
             let value = over_viscosity(&self.start.swimmer) * ratio.exp();
             swimmer.tangential_drag = TangentialDrag::OverViscosity(value);
@@ -132,36 +153,52 @@ impl RunModel {
         parameter.natural(value, &self.start.swimmer)
     }
 
-    /// One cycle of every run; `None` where the swimmer cannot swim.
+    /// One cycle of every run; `None` if the swimmer cannot swim.
     pub(crate) fn cycles(&self, at: &[f64]) -> Option<Vec<PredictedCycle>> {
+        Some(self.seen(at, &self.swum(at)?))
+    }
+
+    /// The poses of every run's cycle.
+    fn swum(&self, at: &[f64]) -> Option<Vec<SwumCycle>> {
         let file = self.file(at);
-        let length = self.start.swimmer.total_length();
+        let turning = self.value(at, Parameter::FloatTurning).unwrap_or(0.0);
+        let model = SwimmerModel::new(&file.swimmer).ok()?;
+        let model = model.with_turning_drag(turning.exp());
         let dead_band = self.value(at, Parameter::DeadBand);
+        let unlike = self.value(at, Parameter::DeadBandDifference);
         let or_none = |parameter: Parameter| self.value(at, parameter).unwrap_or(0.0);
         let [front, back] = [Parameter::FrontGain, Parameter::BackGain].map(or_none);
         let gain = Vector2::new(1.0 + front, 1.0 + back) * (1.0 + or_none(Parameter::Gain));
         let offset = [Parameter::FrontOffset, Parameter::BackOffset].map(or_none);
-        let [along, across] = [Parameter::MarkerAlong, Parameter::MarkerAcross].map(or_none);
-        let marker = Pose::new(
-            along * length,
-            across * length,
-            or_none(Parameter::MarkerAngle),
-        );
-        let scale = 1.0 + or_none(Parameter::Scale);
+        let scale = or_none(Parameter::Scale);
+        let marker = self.marker(at);
         let moves = |parameter: &Parameter| parameter.moves_joints();
         let moved = self.parameters.iter().any(moves);
         let links = [Parameter::FrontLink, Parameter::BackLink].map(or_none);
         let pace = self.value(at, Parameter::Period);
         let lag_s = self.value(at, Parameter::FrontLag);
-        let cycle = |run: &Played| {
+        let swum = |run: &Played| {
             let mut path = Cow::Borrowed(&run.path);
             if let Some(sides) = &run.sides {
-                let angle =
-                    |phi: &Vector2<f64>| sides.corrected(phi, marker, scale - 1.0, links.into());
+                let angle = |phi: &Vector2<f64>| sides.corrected(phi, marker, scale, links.into());
                 path = Cow::Owned(path.with_vertices(angle));
-            } else if dead_band.is_some() || pace.is_some() {
+            } else if dead_band.is_some() || pace.is_some() || unlike.is_some() {
                 let period_s = run.period_s * (1.0 + pace.unwrap_or(0.0));
-                path = Cow::Owned(JointPath::new(&run.gait, file.servo.as_ref(), period_s).ok()?);
+                let by_servo = |more: f64| {
+                    let servo = unlike.map_or(file.servo, |_| {
+                        let servo = file.servo.unwrap_or_else(ideal_servo);
+                        Some(ServoFile {
+                            dead_band: (servo.dead_band + more).max(0.0),
+                            ..servo
+                        })
+                    });
+                    JointPath::new(&run.gait, servo.as_ref(), period_s).ok()
+                };
+                let played = by_servo(0.5 * unlike.unwrap_or(0.0))?;
+                path = Cow::Owned(match unlike {
+                    None => played,
+                    Some(unlike) => played.with_back_of(&by_servo(-0.5 * unlike)?),
+                });
             }
             if let (Some(lag_s), None) = (lag_s, run.sides) {
                 path = Cow::Owned(path.with_front_later(lag_s / run.period_s));
@@ -169,18 +206,142 @@ impl RunModel {
             if moved && run.sides.is_none() {
                 path = Cow::Owned(path.moved(gain, offset.into()));
             }
-            let cut_by = run.cut_by.as_ref();
-            let cycle = path.predict_as_cut(&file.swimmer, &self.projection, marker, cut_by);
-            let cycle = cycle.ok()?;
-            Some(PredictedCycle {
+            Some(path.swum(&model))
+        };
+        self.runs.iter().map(swum).collect()
+    }
+
+    /// Place of the reflectors' middle, and their line's turn.
+    fn marker(&self, at: &[f64]) -> Pose<f64> {
+        let length = self.start.swimmer.total_length();
+        let or_none = |parameter: Parameter| self.value(at, parameter).unwrap_or(0.0);
+        Pose::new(
+            or_none(Parameter::MarkerAlong) * length,
+            or_none(Parameter::MarkerAcross) * length,
+            or_none(Parameter::MarkerAngle),
+        )
+    }
+
+    /// The cycles as the cameras see them.
+    fn seen(&self, at: &[f64], swum: &[SwumCycle]) -> Vec<PredictedCycle> {
+        let or_none = |parameter: Parameter| self.value(at, parameter).unwrap_or(0.0);
+        let scale = 1.0 + or_none(Parameter::Scale);
+        let [square, diagonal] =
+            [Parameter::StretchSquare, Parameter::StretchDiagonal].map(or_none);
+        let cameras = Matrix2::new(1.0 + square, diagonal, diagonal, 1.0 - square);
+        let distortion = or_none(Parameter::Distortion);
+        let is_viewed = self
+            .parameters
+            .iter()
+            .any(|parameter| parameter.is_of_view());
+        let marker = self.marker(at);
+        let see = |(run, swum): (&Played, &SwumCycle)| {
+            let view = run.view.filter(|_| is_viewed);
+            let seen = Observation {
+                marker,
+                stretch: view
+                    .map_or_else(Matrix2::identity, |view| view.stretch(cameras, distortion)),
+            };
+            let cycle = swum.as_cut(&self.projection, &seen, run.cut_by.as_ref());
+            PredictedCycle {
                 x_m: scale * cycle.x_m,
                 y_m: scale * cycle.y_m,
                 delta_y_m: scale * cycle.delta_y_m,
                 ..cycle
-            })
+            }
         };
-        self.runs.iter().map(cycle).collect()
+        self.runs.iter().zip(swum).map(see).collect()
     }
+
+    /// Whether a parameter changes only the way that poses are seen.
+    fn is_only_seen(&self, parameter: Parameter) -> bool {
+        let of_marker = matches!(
+            parameter,
+            Parameter::MarkerAlong
+                | Parameter::MarkerAcross
+                | Parameter::MarkerAngle
+                | Parameter::Scale
+        );
+        let measured = |run: &Played| run.sides.is_some();
+        parameter.is_of_view() || of_marker && !self.runs.iter().any(measured)
+    }
+
+    /// The derivative of all values by one parameter; `swum` are the poses of this point, if they are known.
+    pub(crate) fn column(
+        &self,
+        at: &[f64],
+        column: usize,
+        swum: Option<&[SwumCycle]>,
+    ) -> Option<DVector<f64>> {
+        let parameter = *self.parameters.get(column)?;
+        let (low, high) = parameter.bounds(&self.start.swimmer);
+        let look = |by: f64| {
+            let mut z = at.to_vec();
+            z[column] += by;
+            match swum {
+                Some(swum) if self.is_only_seen(parameter) => self.scaled(&self.seen(&z, swum)),
+                _ => self.values(&z),
+            }
+        };
+        let step = parameter.step();
+        let (h, centred) = if at[column] - step < low {
+            (step, false)
+        } else {
+            (-step, (at[column] + step) <= high)
+        };
+        let slopes: Vec<f64> = if centred {
+            let (behind, ahead) = (look(-step)?, look(step)?);
+            let pairs = behind.iter().zip(&ahead);
+            pairs.map(|(b, a)| (a - b) / (2.0 * step)).collect()
+        } else {
+            let (here, one, two) = (look(0.0)?, look(h)?, look(2.0 * h)?);
+            let values = here.iter().zip(&one).zip(&two);
+            values
+                .map(|((c, a), b)| (4.0 * a - b - 3.0 * c) / (2.0 * h))
+                .collect()
+        };
+        Some(DVector::from_vec(slopes))
+    }
+
+    /// Values of cycles, in units of their scales; `None` if one is not finite.
+    fn scaled(&self, cycles: &[PredictedCycle]) -> Option<Vec<f64>> {
+        let values = cycles.iter().flat_map(|cycle| {
+            let values = predicted(cycle).into_iter().zip(self.scales);
+            values.map(|(value, scale)| value / scale)
+        });
+        let values: Vec<f64> = values.collect();
+        values
+            .iter()
+            .all(|value| value.is_finite())
+            .then_some(values)
+    }
+}
+
+/// Servos without a dead band, for runs whose swimmer file names none.
+fn ideal_servo() -> ServoFile {
+    ServoFile {
+        dead_band: 0.0,
+        ..ServoFile::default()
+    }
+}
+
+/// Headings and places of runs, places from their centre in units of their mean distance from it; those of runs at one place are 0.
+fn views(runs: &[RunResult]) -> Vec<Option<View>> {
+    let views: Vec<Option<View>> = runs.iter().map(|run| View::of(&run.cycles)).collect();
+    let count = views.iter().flatten().count().max(1) as f64;
+    let places = || views.iter().flatten().map(|view| view.place);
+    let centre = places().sum::<Vector2<f64>>() / count;
+    let squares: f64 = places().map(|place| (place - centre).norm_squared()).sum();
+    let distance = (squares / count).sqrt();
+    let relative = |view: View| View {
+        place: if distance > SAME_PLACE {
+            (view.place - centre) / distance
+        } else {
+            Vector2::zeros()
+        },
+        ..view
+    };
+    views.into_iter().map(|view| view.map(relative)).collect()
 }
 
 impl Model for RunModel {
@@ -189,52 +350,22 @@ impl Model for RunModel {
         self.parameters.iter().map(of).collect()
     }
 
-    /// X, ΔY, Δθ, Y and net turn of every run, in units of their scales; `None` where the swimmer cannot swim.
+    /// X, ΔY, Δθ, Y and net turn of every run, in units of their scales; `None` if the swimmer cannot swim.
     fn values(&self, at: &[f64]) -> Option<Vec<f64>> {
-        let mut out = Vec::with_capacity(QUANTITIES * self.runs.len());
-        for cycle in self.cycles(at)? {
-            out.extend(
-                predicted(&cycle)
-                    .iter()
-                    .zip(self.scales)
-                    .map(|(v, scale)| v / scale),
-            );
-        }
-        out.iter().all(|value| value.is_finite()).then_some(out)
+        self.scaled(&self.cycles(at)?)
     }
 
     /// By differences of second order, wide for what is not smooth, one-sided next to a bound.
     fn jacobian(&self, at: &[f64]) -> Option<DMatrix<f64>> {
-        let mut jacobian = DMatrix::zeros(QUANTITIES * self.runs.len(), at.len());
-        for (column, (parameter, (low, high))) in
-            self.parameters.iter().zip(self.bounds()).enumerate()
-        {
-            let look = |by: f64| {
-                let mut z = at.to_vec();
-                z[column] += by;
-                self.values(&z)
-            };
-            let step = parameter.step();
-            let (h, centred) = if at[column] - step < low {
-                (step, false)
-            } else {
-                (-step, (at[column] + step) <= high)
-            };
-            let slopes: Vec<f64> = if centred {
-                let (behind, ahead) = (look(-step)?, look(step)?);
-                let pairs = behind.iter().zip(&ahead);
-                pairs.map(|(b, a)| (a - b) / (2.0 * step)).collect()
-            } else {
-                let (here, one, two) = (look(0.0)?, look(h)?, look(2.0 * h)?);
-                let values = here.iter().zip(&one).zip(&two);
-                values
-                    .map(|((c, a), b)| (4.0 * a - b - 3.0 * c) / (2.0 * h))
-                    .collect()
-            };
-            for (row, slope) in slopes.into_iter().enumerate() {
-                jacobian[(row, column)] = slope;
-            }
-        }
-        Some(jacobian)
+        let is_only_seen = |parameter: &Parameter| self.is_only_seen(*parameter);
+        let here = if self.parameters.iter().any(is_only_seen) {
+            Some(self.swum(at)?)
+        } else {
+            None
+        };
+        let columns = (0..at.len())
+            .map(|column| self.column(at, column, here.as_deref()))
+            .collect::<Option<Vec<_>>>()?;
+        Some(DMatrix::from_columns(&columns))
     }
 }

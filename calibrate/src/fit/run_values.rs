@@ -1,7 +1,7 @@
 //! What the runs of a fit measured, in the units in which everything compares.
 
 use super::WEIGHTS;
-use super::errors::{Variance, within_runs};
+use super::errors::{RunErrors, Variance, within_runs};
 use crate::cycles::{Cycles, Statistics};
 use crate::error::FitError;
 use crate::quantities::{NAMES, QUANTITIES, TELLING, measured};
@@ -14,23 +14,32 @@ const SCALED_LIKE: [usize; QUANTITIES] = [0, 1, 2, 0, 2];
 pub(crate) struct RunValues {
     /// Largest measured X, ΔY \[m\], Δθ \[rad\]; Y goes with X, the turn with Δθ.
     pub(crate) scales: [f64; QUANTITIES],
-    /// Five of each run.
+    /// Five of each run; those of the first of several repeats are their mean.
     pub(crate) values: Vec<f64>,
+    /// The same of each run by itself.
+    pub(crate) own: Vec<f64>,
     /// Their variances within runs.
     pub(crate) within: Vec<Variance>,
+    /// The same of each run by itself.
+    pub(crate) own_within: Vec<Variance>,
     /// Which of them count: Y and turn only where they are asked for.
     pub(crate) used: Vec<bool>,
     /// Which of them were measured or told.
     there: Vec<bool>,
+    /// Which of these count if they are asked for: all but the later ones of repeats.
+    counts: Vec<bool>,
 }
 
 impl RunValues {
-    /// Of cycles, with the variances of what the model makes of measured angles.
+    /// Of cycles, with the variances that their scatter does not show. `first` is the first run of the same gait, for each run:
+    /// repeats count as one run with their mean, since what the model misses of a gait it misses in all of them.
     pub(crate) fn of<'a>(
-        runs: impl Iterator<Item = (&'a Cycles, [f64; QUANTITIES])>,
+        runs: impl Iterator<Item = (&'a Cycles, RunErrors)>,
+        first: &[usize],
     ) -> Result<Self, FitError> {
-        let (statistics, more): (Vec<[Statistics; QUANTITIES]>, Vec<[f64; QUANTITIES]>) =
-            runs.map(|(cycles, more)| (measured(cycles), more)).unzip();
+        let (statistics, errors): (Vec<[Statistics; QUANTITIES]>, Vec<RunErrors>) = runs
+            .map(|(cycles, errors)| (measured(cycles), errors))
+            .unzip();
         let mut scales = [0.0_f64; QUANTITIES];
         for (q, scale) in scales.iter_mut().enumerate() {
             let sizes = statistics.iter().map(|run| run[SCALED_LIKE[q]].mean.abs());
@@ -44,9 +53,9 @@ impl RunValues {
                 return Err(FitError::NothingMeasured { quantity: NAMES[q] });
             }
         }
-        let scaled = |(run, more): ([Variance; QUANTITIES], [f64; QUANTITIES])| {
+        let scaled = |(run, errors): ([Variance; QUANTITIES], &RunErrors)| {
             std::array::from_fn::<_, QUANTITIES, _>(|q| Variance {
-                value: (run[q].value + more[q]) / scales[q].powi(2),
+                value: (run[q].value + errors.path[q]) / scales[q].powi(2),
                 ..run[q]
             })
         };
@@ -61,25 +70,76 @@ impl RunValues {
                 std::array::from_fn::<_, QUANTITIES, _>(|q| finite(run[q].mean / scales[q]))
             })
             .collect();
-        Ok(Self {
+        let mut out = Self {
             scales,
-            used: (0..values.len())
-                .map(|row| row % QUANTITIES < TELLING && there[row])
-                .collect(),
+            used: Vec::new(),
             there,
+            counts: Vec::new(),
+            own: values.clone(),
             values,
-            within: within_runs(&statistics)
+            own_within: Vec::new(),
+            within: within_runs(&statistics, &errors)
                 .into_iter()
-                .zip(more)
+                .zip(&errors)
                 .flat_map(scaled)
                 .collect(),
-        })
+        };
+        out.counts.clone_from(&out.there);
+        out.own_within.clone_from(&out.within);
+        out.average_repeats(first);
+        out.used = (0..out.values.len())
+            .map(|row| row % QUANTITIES < TELLING && out.counts[row])
+            .collect();
+        Ok(out)
+    }
+
+    /// Gives the mean of repeats to the first of them, with its variance: by the cycles, or by the repeats' own scatter if that
+    /// is larger. The others do not count.
+    fn average_repeats(&mut self, first: &[usize]) {
+        for leader in 0..first.len() {
+            let repeats: Vec<usize> = (leader..first.len())
+                .filter(|run| first.get(*run) == Some(&leader))
+                .collect();
+            if repeats.len() < 2 {
+                continue;
+            }
+            for q in 0..QUANTITIES {
+                let rows = repeats.iter().map(|run| QUANTITIES * run + q);
+                let rows: Vec<usize> = rows.filter(|row| self.there[*row]).collect();
+                let Some((head, others)) = rows.split_first() else {
+                    continue;
+                };
+                let count = rows.len() as f64;
+                let mean = rows.iter().map(|row| self.own[*row]).sum::<f64>() / count;
+                let squares = rows.iter().map(|row| (self.own[*row] - mean).powi(2));
+                let scatter = squares.sum::<f64>() / (count - 1.0).max(1.0) / count;
+                let within = rows.iter().map(|row| self.within[*row].value).sum::<f64>();
+                let within = within / count.powi(2);
+                let freedom = rows.iter().map(|row| self.within[*row].freedom);
+                let freedom = freedom.sum::<f64>();
+                self.values[*head] = mean;
+                self.within[*head] = if scatter > within || freedom <= 0.0 {
+                    Variance {
+                        value: scatter.max(within),
+                        freedom: count - 1.0,
+                    }
+                } else {
+                    Variance {
+                        value: within,
+                        freedom,
+                    }
+                };
+                for other in others {
+                    self.counts[*other] = false;
+                }
+            }
+        }
     }
 
     /// The same with Y and net turn.
     pub(crate) fn with_all(&self) -> Self {
         Self {
-            used: self.there.clone(),
+            used: self.counts.clone(),
             ..self.clone()
         }
     }
@@ -88,6 +148,7 @@ impl RunValues {
     pub(crate) fn push_known(&mut self) {
         self.used.push(true);
         self.there.push(true);
+        self.counts.push(true);
     }
 
     /// Whether a value was measured or told at all.
@@ -105,6 +166,12 @@ impl RunValues {
             }
         };
         self.used.iter().enumerate().map(weigh).collect()
+    }
+
+    /// Whether every value that counts has an error, by scatter or as stated.
+    pub(crate) fn has_errors(&self) -> bool {
+        let mut used = self.within.iter().zip(&self.used);
+        used.all(|(within, used)| !used || within.is_known())
     }
 
     /// How many count.

@@ -20,6 +20,20 @@ pub(crate) struct Tangent {
 }
 
 impl Tangent {
+    pub(crate) fn new(
+        at: &[f64],
+        values: Vec<f64>,
+        jacobian: DMatrix<f64>,
+        bounds: Vec<(f64, f64)>,
+    ) -> Self {
+        Self {
+            at: at.to_vec(),
+            values,
+            jacobian,
+            bounds,
+        }
+    }
+
     pub(crate) fn of(model: &impl Model, at: &[f64]) -> Option<Self> {
         Some(Self {
             at: at.to_vec(),
@@ -27,6 +41,22 @@ impl Tangent {
             jacobian: model.jacobian(at)?,
             bounds: model.bounds(),
         })
+    }
+
+    /// With one parameter more: its column, the values at a point near by, and a row of its own if it is known beforehand.
+    pub(crate) fn beyond(
+        &self,
+        model: &impl Model,
+        at: &[f64],
+        values: Vec<f64>,
+        column: &DVector<f64>,
+    ) -> Self {
+        let (rows, last) = (values.len(), at.len() - 1);
+        let jacobian = DMatrix::from_fn(rows, at.len(), |i, j| match (i, j) {
+            (i, j) if j == last => column.get(i).copied().unwrap_or(0.0),
+            (i, j) => self.jacobian.get((i, j)).copied().unwrap_or(0.0),
+        });
+        Self::new(at, values, jacobian, model.bounds())
     }
 
     /// The largest likelihood of the model itself, and its last tangent. `weights` are those of the first step.

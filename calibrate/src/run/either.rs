@@ -7,8 +7,8 @@ use swimmer_model::Swimmer;
 use super::{Opposed, Run, RunResult, Told, opposed};
 use crate::cycles::{Cycles, Projection};
 use crate::error::CalibrateError;
+use crate::fit::errors::RunErrors;
 use crate::prediction::Played;
-use crate::quantities::QUANTITIES;
 
 /// Tracked or told.
 pub(crate) enum EitherRun<'a> {
@@ -38,14 +38,16 @@ impl EitherRun<'_> {
         }
     }
 
-    pub(crate) fn path_variances(
+    /// Variances that the scatter between cycles does not show.
+    pub(crate) fn errors(
         &self,
+        cycles: &Cycles,
         swimmer: &Swimmer<f64>,
         projection: &Projection,
-    ) -> Result<[f64; QUANTITIES], CalibrateError> {
+    ) -> Result<RunErrors, CalibrateError> {
         match self {
-            Self::Tracked(run) => run.path_variances(swimmer, projection),
-            Self::Told(_) => Ok([0.0; QUANTITIES]),
+            Self::Tracked(run) => run.errors(cycles, swimmer, projection),
+            Self::Told(_) => Ok(RunErrors::default()),
         }
     }
 
@@ -79,19 +81,20 @@ impl EitherRun<'_> {
         swimmer: &Swimmer<f64>,
         projection: &Projection,
     ) -> Result<Option<Opposed>, CalibrateError> {
-        let told = match self {
-            Self::Tracked(run) => &run.told,
-            Self::Told(run) => &run.played,
+        let (told, name) = match self {
+            Self::Tracked(run) => (&run.told, &run.data.gait_name),
+            Self::Told(run) => (&run.played, &run.gait),
         };
         Ok(opposed(
             cycles,
             told.path.predict(swimmer, projection)?.0.x_m,
+            name.ends_with(":cw"),
         ))
     }
 
-    pub(crate) fn finish(self, cycles: Cycles, path_variances: [f64; QUANTITIES]) -> RunResult {
+    pub(crate) fn finish(self, cycles: Cycles, errors: RunErrors) -> RunResult {
         match self {
-            Self::Tracked(run) => run.finish(cycles, path_variances),
+            Self::Tracked(run) => run.finish(cycles, errors),
             Self::Told(run) => run.finish(),
         }
     }

@@ -7,15 +7,15 @@ use swimmer_files::{AnyGait, CampaignRun, SwimmerFile, ToldRun};
 use super::RunResult;
 use crate::cycles::Cycles;
 use crate::error::CalibrateError;
+use crate::fit::errors::RunErrors;
 use crate::poses::PoseTrack;
 use crate::prediction::Played;
-use crate::quantities::QUANTITIES;
 
 /// What was told of a run, and of what gait.
 pub(crate) struct Told {
     index: usize,
     pub(super) file: PathBuf,
-    gait: String,
+    pub(super) gait: String,
     pub(super) cycles: Cycles,
     pub(super) played: Played,
 }
@@ -52,7 +52,7 @@ impl Told {
             reflector_distance_m: f64::NAN,
             joints: None,
             played: self.played,
-            path_variances: [0.0; QUANTITIES],
+            errors: RunErrors::default(),
         }
     }
 }

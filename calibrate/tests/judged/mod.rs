@@ -194,3 +194,16 @@ pub(crate) fn with_systematics(seed: u64) -> Lab {
     lab.cameras.scale = 1.0 + 0.002 * chance.normal();
     lab
 }
+
+/// The same with small errors that no campaign states: lengths 0.3 mm, cameras tilted by up to 1°, a lens that distorts by up to 1 %
+/// at one metre, runs in all directions and at all places.
+pub(crate) fn small_errors(seed: u64) -> Lab {
+    let mut lab = with_systematics(seed).with_runs_all_over();
+    let mut chance = Chance::new(seed + 2_000_000);
+    lab.body.middle += 3e-4 * chance.normal();
+    lab.body.front += 3e-4 * chance.normal();
+    lab.body.back += 3e-4 * chance.normal();
+    lab.cameras.tilt = chance.within(0.0, 1.0).to_radians();
+    lab.cameras.distortion = chance.within(-0.01, 0.01);
+    lab
+}

@@ -19,6 +19,8 @@ pub(crate) struct Body {
     pub(crate) c_t: f64,
     /// r_s \[m\].
     pub(crate) sphere: f64,
+    /// Rotational drag of the float over that of the sphere.
+    pub(crate) turning: f64,
 }
 
 /// The connection: velocities (ẋ, ẏ, θ̇) in the middle link's frame for each joint's unit rate.
@@ -33,6 +35,7 @@ impl Body {
         chi: 2.93,
         c_t: 1.0 / 4.543,
         sphere: 0.0545,
+        turning: 1.0,
     };
 
     pub(crate) const PURCELL: Self = Self {
@@ -42,6 +45,7 @@ impl Body {
         chi: 2.0,
         c_t: 1.0,
         sphere: 0.0,
+        turning: 1.0,
     };
 
     pub(crate) fn length(&self) -> f64 {
@@ -54,7 +58,7 @@ impl Body {
         let mut sum = [[0.0; 5]; 5];
         // Sphere: 6πμr and 8πμr³.
         let r = self.sphere;
-        (sum[0][0], sum[1][1], sum[2][2]) = (3.0 * r, 3.0 * r, 4.0 * r * r * r);
+        (sum[0][0], sum[1][1], sum[2][2]) = (3.0 * r, 3.0 * r, 4.0 * r * r * r * self.turning);
         let mut add = |weight: f64, velocity: [f64; 5]| {
             for (row, v) in sum.iter_mut().zip(velocity) {
                 for (entry, w) in row.iter_mut().zip(velocity) {

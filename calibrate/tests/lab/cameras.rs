@@ -17,6 +17,8 @@ pub(crate) struct Cameras {
     pub(crate) scale: f64,
     /// Turn of the camera's plane out of the tank's, about its x \[rad\]: a flat table loses the height.
     pub(crate) tilt: f64,
+    /// Share by which a place one metre from the lens's axis, which meets the tank at its origin, is seen further out.
+    pub(crate) distortion: f64,
     /// Chance that a reflector is missing in a frame.
     pub(crate) dropout: f64,
     /// Chance that a ghost appears in a frame; it stays 50 frames on average.
@@ -29,6 +31,7 @@ impl Cameras {
         noise: 3e-4,
         scale: 1.0,
         tilt: 0.0,
+        distortion: 0.0,
         dropout: 0.0,
         ghosts: 0.0,
     };
@@ -178,6 +181,9 @@ fn seen(
         cameras.scale * (drifted[1] * cos - HEIGHT * sin),
         cameras.scale * (drifted[1] * sin + HEIGHT * cos),
     ];
+    let further = 1.0 + cameras.distortion * (place[0].powi(2) + place[1].powi(2));
+    place[0] *= further;
+    place[1] *= further;
     for bump in faults.bumps.iter().filter(|bump| t >= bump.at_s) {
         let (sin, cos) = bump.turn.sin_cos();
         let [x, y, _] = place;

@@ -29,6 +29,8 @@ pub(crate) struct Run {
     pub(crate) clockwise: bool,
     /// What the tank's walls leave of every translation.
     pub(crate) wall: f64,
+    /// Where it starts: x, y \[m\] and heading \[rad\].
+    pub(crate) start: [f64; 3],
     pub(crate) faults: Faults,
 }
 
@@ -38,6 +40,7 @@ impl Run {
             degrees,
             clockwise: false,
             wall: 1.0,
+            start: [0.4, -0.2, 0.8],
             faults: Faults::default(),
         }
     }
@@ -47,6 +50,8 @@ impl Run {
 #[derive(Debug, Clone)]
 pub(crate) struct Lab {
     pub(crate) body: Body,
+    /// Lengths of the links as its people write them down: middle, front, back \[m\].
+    pub(crate) stated: [f64; 3],
     pub(crate) joints: [Joint; 2],
     pub(crate) cameras: Cameras,
     /// Where the reflectors really are. The campaign always says that they sit at the ends of the middle link, and those of
@@ -73,6 +78,7 @@ impl Lab {
         let body = Body::ROBOT;
         Self {
             body,
+            stated: [body.middle, body.front, body.back],
             joints: [Joint::EXACT; 2],
             cameras: Cameras::FULL,
             places: Places {
@@ -101,6 +107,16 @@ impl Lab {
     /// With runs of these amplitudes \[deg\].
     pub(crate) fn with_runs(mut self, degrees: &[f64]) -> Self {
         self.runs = degrees.iter().copied().map(Run::of).collect();
+        self
+    }
+
+    /// With each run in another direction and at another place of the tank.
+    pub(crate) fn with_runs_all_over(mut self) -> Self {
+        for (index, run) in self.runs.iter_mut().enumerate() {
+            let turn = 2.4 * index as f64;
+            let away = 0.1 + 0.08 * index as f64;
+            run.start = [away * turn.cos(), away * turn.sin(), 0.8 + turn];
+        }
         self
     }
 
@@ -143,7 +159,7 @@ impl Lab {
             &self.play(run),
             run.wall,
             self.cameras.rate_hz,
-            [0.4, -0.2, 0.8],
+            run.start,
         )
     }
 
@@ -175,16 +191,15 @@ impl Lab {
     /// The swimmer as its people know it: lengths, form of c_t and servos, but χ = 2 and no sphere.
     pub(crate) fn known(&self) -> SwimmerFile {
         let mut known = SwimmerFile::preset("robot-slender").expect("a preset");
-        known.swimmer.links.middle = self.body.middle;
-        known.swimmer.links.front = self.body.front;
-        known.swimmer.links.back = self.body.back;
+        let links = &mut known.swimmer.links;
+        [links.middle, links.front, links.back] = self.stated;
         known.servo = self.known_servo;
         known
     }
 
     /// The campaign file's text; tracks are called `run0.csv` and so on.
     pub(crate) fn campaign_text(&self, swimmer: &str) -> String {
-        let half = self.body.middle / 2.0;
+        let half = self.stated[0] / 2.0;
         let point = |name: &str| {
             if self.named {
                 name.to_owned()

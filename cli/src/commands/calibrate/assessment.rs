@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use calibrate::assessment::{AssessmentDocument, RunPart, SystematicsPart};
+use calibrate::assessment::{AssessmentDocument, RepeatsPart, RunPart, SystematicsPart};
 use serde::Serialize;
 
 use super::answer::with_intervals;
@@ -159,8 +159,9 @@ impl AssessmentAnswer {
         }
         let chi2 = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), quantity::small);
         let mut notes = vec![format!(
-            "reduced χ² by the cycles' own scatter {} ({} degrees of freedom), with systematics {}; a symmetric gait has \
-             neither Y nor net turn, and chance is that of so much by scatter alone; lengths are X and ΔY over what the other runs foretell",
+            "reduced χ² by the cycles' own scatter {} ({} degrees of freedom), with systematics {}; chance is that of a Y and a net turn \
+             so far from the model's by scatter alone (a symmetric gait has neither with ideal servos; a dead band turns its way, so \
+             that it has Y); lengths are X and ΔY over what the other runs foretell",
             chi2(self.reduced_chi2),
             self.goodness.freedom,
             chi2(self.goodness.reduced_chi2_with_systematics)
@@ -176,6 +177,36 @@ impl AssessmentAnswer {
                 signs.collect::<String>(),
                 test.stretches,
                 test.chance
+            ));
+        }
+        for common in &self.goodness.common {
+            let of = |value: f64| {
+                if common.quantity == "Y/X" {
+                    format!("{value:+.4}")
+                } else {
+                    format!("{:+.3}°", value.to_degrees())
+                }
+            };
+            notes.push(format!(
+                "{} beyond the model with systematics, mean of the runs: {} ± {} (chance {})",
+                common.quantity,
+                of(common.mean),
+                of(common.error).trim_start_matches('+'),
+                chance(common.chance)
+            ));
+        }
+        for repeats in &self.goodness.repeats {
+            let RepeatsPart { files, repeats } = repeats;
+            let of = |[mean, sd]: [f64; 2]| format!("{:.3} ± {:.3} mm", 1e3 * mean, 1e3 * sd);
+            let [turn, turn_sd] = repeats.delta_theta_rad.map(f64::to_degrees);
+            notes.push(format!(
+                "{} repeat {}, and their mean counts as one run: X {}, ΔY {}, Δθ {turn:.3} ± {turn_sd:.3}° from repeat to repeat \
+                 (chance by the cycles' scatter {})",
+                files.join(", "),
+                repeats.gait,
+                of(repeats.x_m),
+                of(repeats.delta_y_m),
+                chance(repeats.chance)
             ));
         }
         Shown {

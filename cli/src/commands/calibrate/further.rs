@@ -16,7 +16,8 @@ use crate::quantity::{self, Table};
 #[allow(clippy::doc_markdown)] // the help is for people: r_s, not `r_s`
 pub(super) struct BeyondFit {
     /// Fit more than r_s and χ: gain (what the servos turn over what they are told; gains: each servo's), ct (c_t/μ), offsets (of
-    /// both joints), deadband (of the servos), marker (where the reflectors' middle sits on the link), scale (of the cameras).
+    /// both joints), deadband (of the servos), marker (where the reflectors' middle sits on the link), scale (of the cameras),
+    /// lengths (of the links), float (its rotational drag over a sphere's), tilt (of the cameras), distortion (of the lens).
     /// Warns where the runs cannot tell them apart
     #[arg(long, value_name = "WHAT,…", value_delimiter = ',', value_parser = PossibleValuesParser::new(Further::ALL.map(Further::word)).try_map(|word| further(&word)))]
     fit_also: Vec<Further>,

@@ -1,11 +1,9 @@
-//! Whether each run swam the gait that it is said to have swum: by how far it swayed, by its link log, and by other runs that hold
-//! the very same recording.
+//! Doubts about the gaits that runs are said to have swum: by how far they swayed, and by their link logs.
 
-use std::collections::HashMap;
 use std::path::Path;
 
 use calibrate::{CampaignData, RunResult, amplitude_by_sway, other_gaits, predict};
-use swimmer_files::{Campaign, GaitSpec, SwimmerFile, hash_of};
+use swimmer_files::{Campaign, GaitSpec, SwimmerFile};
 
 use crate::quantity;
 
@@ -25,8 +23,7 @@ pub(super) fn of_campaign(
         let name = track.file_name().unwrap_or(track.as_os_str());
         name.display().to_string()
     };
-    let mut said = twice(campaign);
-    said.extend_from_slice(&data.doubts);
+    let mut said = data.doubts.clone();
     let unlike = other_gaits(campaign, runs, swimmer);
     said.extend(
         unlike
@@ -52,9 +49,14 @@ pub(super) fn of_single(
         && foretold.x_m * run.cycles.x.mean < 0.0
     {
         said.push(format!(
-            "it swims against the model (X {}, model {}): the gait ran clockwise (add :cw to --gait), or front and back are exchanged",
+            "it swims against the model (X {}, model {}): the gait ran {} --gait), or front and back are exchanged",
             quantity::length(run.cycles.x.mean),
-            quantity::length(foretold.x_m)
+            quantity::length(foretold.x_m),
+            if gait.is_reversed() {
+                "counter-clockwise (take :cw off"
+            } else {
+                "clockwise (add :cw to"
+            }
         ));
     }
     if let Some((amplitude, factor)) = amplitude_by_sway(run, gait, period_s, swimmer)
@@ -67,37 +69,5 @@ pub(super) fn of_single(
             swimmer.name
         ));
     }
-    said
-}
-
-/// Runs whose files hold the same bytes. Recordings may be gigabytes: only those of one length are read, a piece at a time.
-fn twice(campaign: &Campaign) -> Vec<String> {
-    let mut of_length: HashMap<u64, Vec<&Path>> = HashMap::new();
-    for run in &campaign.runs {
-        if run.told.is_none()
-            && run.exclude.is_none()
-            && let Ok(file) = std::fs::metadata(&run.track)
-        {
-            of_length.entry(file.len()).or_default().push(&run.track);
-        }
-    }
-    let mut said = Vec::new();
-    for files in of_length.into_values().filter(|files| files.len() > 1) {
-        let mut seen: HashMap<String, &Path> = HashMap::new();
-        for file in files {
-            let Ok(hash) = hash_of(file) else { continue };
-            match seen.get(&hash) {
-                Some(other) => said.push(format!(
-                    "{} and {} hold the same recording: one of two runs names the wrong file",
-                    other.display(),
-                    file.display()
-                )),
-                None => {
-                    seen.insert(hash, file);
-                }
-            }
-        }
-    }
-    said.sort();
     said
 }

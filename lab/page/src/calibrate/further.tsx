@@ -16,6 +16,10 @@ const CHOICES: readonly (readonly [word: string, what: string])[] = [
   ["ct", "c_t/μ"],
   ["marker", "where the reflectors’ middle sits on the link"],
   ["scale", "of the cameras"],
+  ["lengths", "of the links"],
+  ["float", "its rotational drag over a sphere’s"],
+  ["tilt", "of the cameras"],
+  ["distortion", "of the lens"],
 ];
 
 /** A value as people read it: mm, degrees, or the number. */
