@@ -23,7 +23,7 @@ fn degrees(angle: f64) -> f64 {
 const KINDS: [Kind; 24] = [
     ("nothing", "", |_| {}),
     ("gain 0.97", "gain", |lab| {
-        *lab = lab.clone().with_gain(0.97)
+        *lab = lab.clone().with_gain(0.97);
     }),
     ("gain of the front servo 0.97", "gain", |lab| {
         lab.joints[0].gain = 0.97;
@@ -37,13 +37,13 @@ const KINDS: [Kind; 24] = [
             .for_each(|joint| joint.dead_band = degrees(3.0));
     }),
     ("dead band 4° in front", "dead band", |lab| {
-        lab.joints[0].dead_band = degrees(4.0)
+        lab.joints[0].dead_band = degrees(4.0);
     }),
     ("lag 60 ms", "", |lab| {
-        lab.joints.iter_mut().for_each(|joint| joint.lag_s = 0.06)
+        lab.joints.iter_mut().for_each(|joint| joint.lag_s = 0.06);
     }),
     ("lag 60 ms in front", "lag", |lab| {
-        lab.joints[0].lag_s = 0.06
+        lab.joints[0].lag_s = 0.06;
     }),
     ("reflectors 3 mm further along", "", |lab| {
         lab.places.front[0] += 3e-3;
@@ -59,10 +59,10 @@ const KINDS: [Kind; 24] = [
         lab.places.back[1] -= across;
     }),
     ("camera scale 1.02", "camera scale", |lab| {
-        lab.cameras.scale = 1.02
+        lab.cameras.scale = 1.02;
     }),
     ("camera tilt 8°", "tilt", |lab| {
-        lab.cameras.tilt = degrees(8.0)
+        lab.cameras.tilt = degrees(8.0);
     }),
     (
         "lens distortion 10 % at 1 m",
@@ -75,27 +75,27 @@ const KINDS: [Kind; 24] = [
             .for_each(|run| run.faults.drift = [1.6e-4, 1.2e-4]);
     }),
     ("wall × 0.97 in all", "wall", |lab| {
-        lab.runs.iter_mut().for_each(|run| run.wall = 0.97)
+        lab.runs.iter_mut().for_each(|run| run.wall = 0.97);
     }),
     ("wall × 0.97 in two", "wall", |lab| {
         lab.runs[1].wall = 0.97;
         lab.runs[4].wall = 0.97;
     }),
     ("middle link 0.5 mm longer", "", |lab| {
-        lab.body.middle += 5e-4
+        lab.body.middle += 5e-4;
     }),
     ("middle link 2 mm longer", "middle link", |lab| {
-        lab.body.middle += 2e-3
+        lab.body.middle += 2e-3;
     }),
     ("side links 1 mm longer", "link", |lab| {
         lab.body.front += 1e-3;
         lab.body.back += 1e-3;
     }),
     ("front link 3 mm longer", "link", |lab| {
-        lab.body.front += 3e-3
+        lab.body.front += 3e-3;
     }),
     ("float drags 1.5 times against turning", "float", |lab| {
-        lab.body.turning = 1.5
+        lab.body.turning = 1.5;
     }),
     ("c_t 10 % larger", "c_t", |lab| lab.body.c_t *= 1.1),
     ("a servo turns at most 0.5 rad/s", "", |lab| {

@@ -77,7 +77,7 @@ impl<T: Scalar> Model<T> {
     pub fn with_turning_drag(&self, factor: T) -> Self {
         let turning = sphere_turning(self.swimmer.sphere_radius) * (factor - T::one());
         let mut out = *self;
-        out.middle.zz = out.middle.zz + turning;
+        out.middle.zz += turning;
         out
     }
 

@@ -69,7 +69,8 @@ impl Parameter {
             | Self::BackOffset
             | Self::MarkerAngle
             | Self::FrontLink
-            | Self::BackLink => (-0.35, 0.35),
+            | Self::BackLink
+            | Self::DeadBandDifference => (-0.35, 0.35),
             Self::Gain
             | Self::FrontGain
             | Self::BackGain
@@ -80,7 +81,6 @@ impl Parameter {
             Self::FloatTurning => (-(10_f64.ln()), 10_f64.ln()),
             Self::StretchSquare | Self::StretchDiagonal => (-0.1, 0.1),
             Self::DeadBand => (0.0, 0.35),
-            Self::DeadBandDifference => (-0.35, 0.35),
             Self::FrontLag => (-1.0, 1.0),
             Self::MarkerAlong | Self::MarkerAcross => (-reach, reach),
         }
