@@ -102,9 +102,9 @@ fn wrong_gaits_are_named(demo: &Path) {
     let ran = swimmer_in(demo, &["calibrate", "wrong.toml"]).with_status(0);
     for said in [
         "circle-090.csv and circle-090.csv hold the same recording",
-        "circle-060.csv: it sways like a gait of 59.9",
+        "circle-060.csv: it sways like a gait of 60.0",
         "circle-060.csv: the link log says otherwise: its joints were told up to 60.0",
-        "circle-090.csv: it sways like a gait of 89.9",
+        "circle-090.csv: it sways like a gait of 89.88",
     ] {
         assert!(ran.stdout.contains(said), "{said}: {ran}");
     }
