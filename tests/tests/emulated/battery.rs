@@ -15,7 +15,6 @@ fn set_pack(robot: &mut Robot<Port>, volts: f64) {
 }
 
 #[test]
-#[ignore = "not yet adapted to protocol 1.0 and the battery filter: fails on the emulated board"]
 fn a_low_battery_stops_the_robot_and_five_good_seconds_let_it_go_on() {
     let mut robot = rig::robot_of(Image::NanoDivider);
     let full = robot.status().unwrap();
@@ -83,7 +82,6 @@ fn a_low_battery_stops_the_robot_and_five_good_seconds_let_it_go_on() {
 
 /// A tired pack recovers between two strokes: dips of 40 ms, a hundred times shorter than the stroke, stop the robot too.
 #[test]
-#[ignore = "not yet adapted to protocol 1.0 and the battery filter: fails on the emulated board"]
 fn a_pack_that_dips_on_every_stroke_stops_the_robot() {
     let mut robot = rig::robot_of(Image::NanoDivider);
     rig::upload(&mut robot, &rig::circle(60.0));

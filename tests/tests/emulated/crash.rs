@@ -49,7 +49,6 @@ fn told_after(robot: &mut Robot<Port>) -> (u128, String) {
 }
 
 #[test]
-#[ignore = "not yet adapted to protocol 1.0 and the battery filter: fails on the emulated board"]
 fn a_panic_tells_its_place_and_words() {
     let (mut robot, poll) = armed();
     let board_now = board(&mut robot);
@@ -91,7 +90,6 @@ fn a_panic_tells_its_place_and_words() {
 }
 
 #[test]
-#[ignore = "not yet adapted to protocol 1.0 and the battery filter: fails on the emulated board"]
 fn a_hard_fault_tells_its_address() {
     let (mut robot, poll) = armed();
     board(&mut robot).patch(poll, UNDEFINED).unwrap();

@@ -113,7 +113,6 @@ fn faulty(bytes: &[u8], silent: bool) -> Vec<Character> {
 
 /// Erasing flash stops the chip for 45 ms, in which 500 bytes can come: most are lost, and no harm is done.
 #[test]
-#[ignore = "not yet adapted to protocol 1.0 and the battery filter: fails on the emulated board"]
 fn bytes_are_lost_while_flash_is_erased_and_the_link_goes_on() {
     let mut robot = rig::robot();
     robot.arm(false).unwrap();
