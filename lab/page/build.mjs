@@ -1,4 +1,4 @@
-// Bundles the page into one HTML file: `node build.mjs OUTPUT.html VERSION HASH MODULE.wasm…`.
+// Bundles the page into one HTML file: `node build.mjs OUTPUT.html VERSION HASH MODULE.wasm.gz…`.
 //
 // A module goes in compressed, as text that the browser's parser passes over; a worker goes in as text that is made a Blob,
 // because a page opened from disk may load nothing beside itself. The page's charset is windows-1252, so that a compressed byte is
@@ -7,13 +7,12 @@
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { basename, dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
-import { gzipSync } from "node:zlib";
 import { build } from "esbuild";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const [outputPath, version, hash, ...modulePaths] = process.argv.slice(2);
 if (modulePaths.length === 0) {
-  console.error("usage: node build.mjs OUTPUT.html VERSION HASH MODULE.wasm…");
+  console.error("usage: node build.mjs OUTPUT.html VERSION HASH MODULE.wasm.gz…");
   process.exit(2);
 }
 
@@ -55,20 +54,20 @@ async function bundled(entry) {
 
 const { script, style } = await bundled("src/main.tsx");
 
-/** What HTML reads as something else (nothing, a return that becomes a line's end, the beginning of a tag), and the mark for it. */
+/** Bytes that HTML would read as something else (NUL, carriage return, the beginning of a tag), and the mark that escapes them. */
 const MARK = 16;
 const READ_OTHERWISE = new Set([0, 13, 60, MARK]);
-/** A module compressed, a letter for each byte: the page is written in the one charset that has a letter for every byte. */
+/** A compressed module with one letter for each byte: the page's charset has a letter for every byte. */
 function packed(path) {
   const letters = [];
-  for (const byte of gzipSync(readFileSync(path), { level: 9 })) {
+  for (const byte of readFileSync(path)) {
     if (READ_OTHERWISE.has(byte)) letters.push(MARK, byte + 1);
     else letters.push(byte);
   }
   return Buffer.from(letters).toString("latin1");
 }
 const modules = modulePaths
-  .map((path) => `<script type="text/plain" id="module-${basename(path, ".wasm")}">${packed(path)}</script>`)
+  .map((path) => `<script type="text/plain" id="module-${basename(path, ".wasm.gz")}">${packed(path)}</script>`)
   .join("\n");
 // Nothing in it may look like the end of the element that holds it.
 const inScript = (text) => text.replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");

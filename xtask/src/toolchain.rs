@@ -45,14 +45,14 @@ impl Target {
         }
     }
 
-    /// What is compiled for it, the standard library too, is compiled with these. A page that panics has nobody to tell why: its
-    /// message, and every number in it, is a tenth of a module. What a hand waits for is compiled to be fast, and inlines no more
-    /// than the formulas' own small steps; vector instructions, which every browser of today has, make it smaller too.
+    /// Flags of rustc for our crates and for the standard library. The page's modules leave out the messages of panics, which are
+    /// a tenth of a module and which a page cannot show. They inline only small functions, such as the steps of a formula. Vector
+    /// instructions, which all current browsers have, make the modules smaller as well.
     const fn flags(self) -> &'static str {
         match self {
             Self::Chip => "",
             Self::Page => {
-                "-Zunstable-options -Cpanic=immediate-abort -Ctarget-feature=+simd128 -Cllvm-args=-inline-threshold=60"
+                "-Zunstable-options -Cpanic=immediate-abort -Ctarget-feature=+simd128 -Cllvm-args=-inline-threshold=40"
             }
         }
     }
