@@ -89,7 +89,7 @@ function KeyField() {
     );
   }
   return (
-    <div class="robot-key" id="key">
+    <form class="robot-key" id="key" onSubmit={(event) => event.preventDefault()}>
       <span class="soft">Key, only for a robot that has one:</span>
       <OpenButton id="key-file" name="Choose file…" accept="" open={([file]) => file && void file.text().then((text) => take(file.name, text))} />
       <input
@@ -102,7 +102,7 @@ function KeyField() {
         onChange={(event) => event.currentTarget.value !== "" && take("as typed", event.currentTarget.value)}
       />
       {noKey.value && <p class="error" role="alert">{noKey.value}</p>}
-    </div>
+    </form>
   );
 }
 

@@ -38,7 +38,7 @@ export function Controls() {
         <button id="pause" onClick={() => request({ Pause: { detached: false } }, "pause")} disabled={state !== "Playing"}>Pause</button>
         <button id="resume" onClick={() => request("Resume", "resume")} disabled={state !== "Paused"}>Resume</button>
         <button id="stop" onClick={stop}>Stop</button>
-        {state === "EStopped" && <button id="clear" onClick={() => request({ ClearEStop: { count: held.value?.estops ?? 0 } }, "end of the e-stop")}>End the e-stop</button>}
+        {state === "EStopped" && <button id="clear" disabled={!held.value} onClick={() => held.value && request({ ClearEStop: { count: held.value.estops } }, "end of the e-stop")}>End the e-stop</button>}
       </div>
       {progress.value && <progress max={progress.value.total} value={progress.value.done} aria-label="Upload" />}
       <p class={said.value.failed ? "error" : "soft"} role="status" id="said">{busy.value ? `${busy.value} …` : said.value.text}</p>

@@ -75,8 +75,9 @@ function hear(news: News): void {
     case "link":
       link.value = news;
       if (news.state !== "open") busy.value = "";
-      if (news.state === "closed") wheel.value = telemetry.value = hello.value = held.value = stands.value = null;
-      if (news.state !== "open") table.value = null;
+      if (news.state === "closed") wheel.value = telemetry.value = hello.value = stands.value = null;
+      // A session asks for the robot's status anew: e-stops may have come, or other settings.
+      if (news.state !== "open") table.value = held.value = null;
       break;
     case "events":
       for (const event of news.events) if (event.event === "telemetry") take(event.telemetry);
