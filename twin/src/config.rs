@@ -102,6 +102,11 @@ impl TwinConfig {
         self
     }
 
+    /// Returns true if the robot's port counts as a radio, so that whoever speaks there need not be at the robot.
+    pub fn is_by_radio(&self) -> bool {
+        self.transport == Transport::Uart
+    }
+
     /// The brain of such a robot, before it has loaded its flash.
     pub(crate) fn brain(&self) -> Brain {
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
