@@ -11,11 +11,14 @@ use twin::TwinConfig;
 
 use crate::EmulatedRobot;
 
-/// Greets a robot that was just switched on and tells it what a twin of `config` is made with: the maps of its servos and
-/// its configuration. The robot keeps both.
+/// Connects to a robot that was just switched on and sends it the settings of a twin of `config`: the maps of its servos and
+/// its configuration. The robot stores both.
+///
+/// If the line counts as a radio ([`TwinConfig::is_by_radio`]), the robot is then switched off and on, which ends the two minutes
+/// in which the closed jumper shows that somebody is at the robot.
 ///
 /// # Errors
-/// [`LinkError::Refused`] where the firmware's own limits are tighter, and the link's.
+/// [`LinkError::Refused`] if the firmware's own limits are tighter, and the link's.
 pub fn commission(
     mut robot: EmulatedRobot,
     config: &TwinConfig,
@@ -37,5 +40,13 @@ pub fn commission(
         robot.set_servo(joint, servo)?;
     }
     robot.configure(config.belief)?;
+    if config.is_by_radio() {
+        robot.wait_until_stored("storing the settings")?;
+        let board = robot.port_mut().device_mut().board_mut();
+        board.power_cycle().map_err(|error| LinkError::Port {
+            doing: "switching the robot off and on",
+            source: io::Error::other(error),
+        })?;
+    }
     Ok(robot.into_port())
 }

@@ -72,10 +72,9 @@ fn the_twin_refuses_a_stranger_once_a_key_is_set() {
 }
 
 #[test]
-#[ignore = "the client does not yet complete its attacks on the emulated board"]
 fn the_firmware_refuses_a_stranger_on_the_radio() {
     let board = board();
-    let mut words = vec!["--robot", "emulator"];
+    let mut words = vec!["--robot", "emulator", "--radio"];
     words.extend(board.iter().map(String::as_str));
     Target::start(&words).withstands("radio");
 }

@@ -309,6 +309,14 @@ impl<P: Port> Robot<P> {
         self.order(Request::SetKey(key), doing)?;
         self.connection.session.set_key(key);
         self.reconnect()?;
+        self.wait_until_stored(doing)
+    }
+
+    /// Waits until the robot has written its settings and its table to flash. `doing` is what was being stored, for the error.
+    ///
+    /// # Errors
+    /// [`LinkError::NotStored`] if it has not within a few seconds, and the link's.
+    pub fn wait_until_stored(&mut self, doing: &'static str) -> Result<(), LinkError> {
         for _ in 0..STORE_LOOKS {
             if !self.status()?.flags.contains(Flags::UNSAVED) {
                 return Ok(());
