@@ -13,6 +13,7 @@ mod flash;
 mod hc05;
 #[cfg(unix)]
 mod hung_holder;
+mod json_goldens;
 mod lab;
 #[cfg(unix)]
 mod laboratory;
