@@ -4,6 +4,7 @@
 import fs from 'node:fs';
 import { RP2040 } from 'rp2040js';
 import { ringOscillator } from './chance.mjs';
+import { MemoryFault, memoryProtection } from './mpu.mjs';
 import { quicken } from './quick.mjs';
 import { noise, paint, unpainted } from './ram.mjs';
 import { Rtt } from './rtt.mjs';
@@ -20,6 +21,8 @@ const ERASE_NS = 45e6, PROGRAM_NS = 0.4e6;
 const SLICE = 0;
 /** The firmware's control task runs in this exception: 16 + SWI_IRQ_1. */
 const CONTROL = 16 + 27;
+/** A hard fault's number. */
+const HARD_FAULT = 3;
 /** Bit of WATCHDOG.REASON: its timer ran out. */
 const TIMER = 1;
 /** RESETS.RESET as a reset of the chip leaves it: every peripheral held in reset. */
@@ -241,7 +244,7 @@ export class Board {
         this.sleep(Math.min(this.stalledUntil, end));
         continue;
       }
-      if (core.waiting) {
+      if (core.waiting || this.lockedUp) {
         this.takeLog();
         this.sleep(Math.min(clock.nextAlarm?.nanos ?? end, end));
         continue;
@@ -250,7 +253,7 @@ export class Board {
       if (core.registers[15] < 0x4000) this.trap(core);
       if (core.registers[15] === this.patched) this.reachPatch();
       const inControl = core.IPSR === CONTROL;
-      let cycles = core.executeInstruction();
+      let cycles = this.execute(core);
       if (this.cache) cycles += this.fills();
       this.busy += cycles;
       if (inControl) {
@@ -266,6 +269,29 @@ export class Board {
         cycle = 1e9 / this.mcu.clkSys; // the firmware sets its clock up once, early
         this.takeLog();
       }
+    }
+  }
+
+  /** One instruction; one that the memory protection unit refuses is a hard fault at its own address. */
+  execute(core) {
+    const at = core.registers[15];
+    try {
+      return core.executeInstruction();
+    } catch (thrown) {
+      if (!(thrown instanceof MemoryFault)) throw thrown;
+      core.registers[15] = at;
+      this.takeFault(core);
+      return 1;
+    }
+  }
+
+  /** Where the stack has no room for the registers either, the core locks up: it does nothing more until a reset. */
+  takeFault(core) {
+    try {
+      core.exceptionEntry(HARD_FAULT);
+    } catch (thrown) {
+      if (!(thrown instanceof MemoryFault)) throw thrown;
+      this.lockedUp = true;
     }
   }
 
@@ -332,6 +358,7 @@ export class Board {
     this.misses = 0;
     this.stalledUntil = 0;
     this.asleep = false;
+    this.lockedUp = false;
     const mcu = new RP2040();
     this.mcu = mcu;
     if (ram) {
@@ -349,6 +376,7 @@ export class Board {
       button: () => this.button,
       warn: (text) => { this.events.warnings[text] = (this.events.warnings[text] ?? 0) + 1; },
     });
+    memoryProtection(mcu);
     mcu.flash.set(this.flash, 0);
     this.cache = this.cached ? new FlashCache(this.kind) : null;
     this.cache?.watch(mcu);

@@ -47,6 +47,8 @@ mod retained_ram;
 #[cfg(target_os = "none")]
 mod servos;
 #[cfg(target_os = "none")]
+mod stack_guard;
+#[cfg(target_os = "none")]
 mod start;
 #[cfg(target_os = "none")]
 mod storage;

@@ -15,7 +15,7 @@ use crate::presence::Presence;
 use crate::servos::Servos;
 use crate::storage::FlashStorage;
 use crate::watchdog::Watchdog;
-use crate::{battery, boot, uart, usb, watchdog};
+use crate::{battery, boot, stack_guard, uart, usb, watchdog};
 
 /// Runs `control` from an interrupt, so that no other task can hold it up.
 static ABOVE_THE_THREAD: InterruptExecutor = InterruptExecutor::new();
@@ -31,6 +31,7 @@ fn SWI_IRQ_1() {
 
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
+    stack_guard::start();
     let whole_chip = watchdog::whole_chip_was_reset();
     let board = Board::new(embassy_rp::init(embassy_rp::config::Config::default()));
     // First of all the pins that could move something: outputs low, counter stopped.

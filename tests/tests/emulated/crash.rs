@@ -109,6 +109,77 @@ fn a_hard_fault_tells_its_address() {
     assert_eq!(robot.crash_message().unwrap(), "");
 }
 
+/// What a debugger and an overflow of the stack meet, as the registers say it. That silicon does what they say is untested.
+#[test]
+fn the_watchdog_runs_under_a_debugger_and_the_stack_has_a_guard() {
+    let mut board = rig::board(rig::Image::Nano);
+    board.run(Duration::from_millis(100)).unwrap();
+    let mut word = |address: u32| {
+        let bytes = board.peek(address, 4).unwrap();
+        u32::from_le_bytes(bytes.try_into().unwrap())
+    };
+    const WATCHDOG_CTRL: u32 = 0x4005_8000;
+    let control = word(WATCHDOG_CTRL);
+    assert_eq!(control >> 30 & 1, 1, "enabled");
+    assert_eq!(
+        control >> 24 & 7,
+        0,
+        "paused by a debugger: {control:#010x}"
+    );
+    const MPU_CTRL: u32 = 0xe000_ed94;
+    let [control, _, base, size] = [0, 4, 8, 12].map(|offset| word(MPU_CTRL + offset));
+    assert_eq!(
+        control, 5,
+        "on, the default map elsewhere, off in a hard fault"
+    );
+    let bytes = 2_u64 << (size >> 1 & 31);
+    let below = u64::from(base & !0xff) + bytes;
+    assert_eq!((size & 1, size >> 24 & 7), (1, 0), "enabled, no access");
+    assert_eq!(below, 0x2000_0000, "up to the stack's first byte");
+    assert!(bytes >= 28 * 1024, "no frame reaches past it");
+    seen(
+        "watchdog and MPU, by their registers (untested on a board)",
+        "the watchdog's timer runs while a debugger halts the core; no access to the 32 KiB below the stack",
+    );
+}
+
+/// A stack that grows for ever meets the guard: no variable changes, and the watchdog ends it.
+#[test]
+fn a_stack_overflow_is_reset_and_changes_no_variable() {
+    /// `push {r0-r7, lr}`, and a branch back to it.
+    const PUSH_FOR_EVER: [u16; 2] = [0xb5ff, 0xe7fd];
+    let (mut robot, poll) = armed();
+    robot.estop().unwrap();
+    rig::pass(&mut robot, Duration::from_millis(100));
+    rig::events(&mut robot);
+    let before = board(&mut robot).now();
+    for (half, word) in (0..).zip(PUSH_FOR_EVER) {
+        board(&mut robot).patch(poll + 2 * half, word).unwrap();
+    }
+    rig::pass(&mut robot, Duration::from_millis(600));
+    let events = rig::events(&mut robot);
+    let [reset] = events.resets[..] else {
+        panic!("{:?}", events.resets)
+    };
+    let took = reset.at().saturating_sub(before);
+    assert!(took <= Duration::from_millis(500), "{took:?}");
+    robot.reconnect().unwrap();
+    let reason = robot.info().reset_reason;
+    assert!(
+        matches!(reason, ResetReason::Watchdog | ResetReason::Crash),
+        "{reason:?}"
+    );
+    // Kept in RAM just above the stack.
+    assert_eq!(robot.status().unwrap().state, StateName::EStopped);
+    seen(
+        "R7, a stack that overflows while e-stopped",
+        &format!(
+            "reset after {} ms, reason `{reason:?}`, e-stopped still",
+            took.as_millis()
+        ),
+    );
+}
+
 /// R6, for the pin that the chip's own registers do not outlive: pressing reset clears no e-stop, power does.
 #[test]
 fn an_estop_outlives_the_reset_pin() {
