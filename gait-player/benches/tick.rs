@@ -1,6 +1,6 @@
 //! What a tick costs on this machine, playing a table of 512 knots; the chip's figure is the emulator's to tell.
 #![allow(missing_docs)]
-#[path = "../tests/bench/mod.rs"]
+#[path = "../tests/player/bench/mod.rs"]
 mod bench;
 
 use bench::{Bench, circle, play};

@@ -50,7 +50,7 @@ impl Ramp {
 
     /// The way to neutral at the full rate: what every stop takes. It is not checked for crossing, because it must begin
     /// at once; within [`Limits::ROBOT`]'s largest angle no such way brings the side links nearer than where it starts
-    /// (`tests/crossing.rs`).
+    /// (`tests/player/crossing.rs`).
     pub fn to_neutral(from: [f32; 2], limits: &Limits) -> Self {
         let first = Leg {
             from,

@@ -1,6 +1,6 @@
 //! The shipped binary sets up a module on a pseudo-terminal.
 
-#[path = "../../../host-link/tests/fake_module/mod.rs"]
+#[path = "../../../host-link/tests/link/fake_module/mod.rs"]
 mod fake_module;
 
 use std::path::Path;

@@ -228,7 +228,7 @@ impl<P: Port> Robot<P> {
     /// What the robot takes at least, from asking for an upload of `bytes` of table until it has checked it, while it plays:
     /// checks are slower then, because the servos come first.
     pub fn expected_upload_while_playing(&self, bytes: usize) -> Duration {
-        /// Of one knot; the brain's tests print it (`cargo test -p gait-player --test follow -- --nocapture`).
+        /// Of one knot; the brain's tests print it (`cargo test -p gait-player --test player follow -- --nocapture`).
         const CHECK_OF_A_KNOT: Duration = Duration::from_millis(9);
         let knots = u32::try_from(bytes / 4).unwrap_or(u32::MAX);
         self.expected_upload(bytes) + CHECK_OF_A_KNOT.saturating_mul(knots)

@@ -13,7 +13,7 @@ mod endurance;
 mod failsafes;
 mod flash;
 mod frames;
-#[path = "../../../host-link/tests/rig/haste.rs"]
+#[path = "../../../host-link/tests/link/haste.rs"]
 mod haste;
 mod load;
 mod log;

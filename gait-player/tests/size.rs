@@ -1,9 +1,0 @@
-//! Promise R13, the brain's share: it fits a small corner of 96 KiB.
-#![allow(missing_docs)]
-
-#[test]
-fn the_brain_is_small() {
-    let bytes = size_of::<gait_player::Brain>();
-    println!("R13: the brain takes {bytes} bytes (on a 64-bit host; less on the chip)");
-    assert!(bytes <= 8 * 1024, "{bytes}");
-}
