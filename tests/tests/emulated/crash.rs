@@ -109,16 +109,17 @@ fn a_hard_fault_tells_its_address() {
     assert_eq!(robot.crash_message().unwrap(), "");
 }
 
-/// What a debugger and an overflow of the stack meet, as the registers say it. That silicon does what they say is untested.
+/// The watchdog under a debugger and the guard below the stack, by their registers. Their effect on silicon is untested.
 #[test]
 fn the_watchdog_runs_under_a_debugger_and_the_stack_has_a_guard() {
+    const WATCHDOG_CTRL: u32 = 0x4005_8000;
+    const MPU_CTRL: u32 = 0xe000_ed94;
     let mut board = rig::board(rig::Image::Nano);
     board.run(Duration::from_millis(100)).unwrap();
     let mut word = |address: u32| {
         let bytes = board.peek(address, 4).unwrap();
         u32::from_le_bytes(bytes.try_into().unwrap())
     };
-    const WATCHDOG_CTRL: u32 = 0x4005_8000;
     let control = word(WATCHDOG_CTRL);
     assert_eq!(control >> 30 & 1, 1, "enabled");
     assert_eq!(
@@ -126,7 +127,6 @@ fn the_watchdog_runs_under_a_debugger_and_the_stack_has_a_guard() {
         0,
         "paused by a debugger: {control:#010x}"
     );
-    const MPU_CTRL: u32 = 0xe000_ed94;
     let [control, _, base, size] = [0, 4, 8, 12].map(|offset| word(MPU_CTRL + offset));
     assert_eq!(
         control, 5,
