@@ -7,6 +7,7 @@ fn transcripts() {
         .case("../README.md")
         .case("../docs/*.md")
         .case("../docs/*/*.md")
+        .case("../docs/*/*/*.md")
         .env("NO_COLOR", "1")
         .run();
 }

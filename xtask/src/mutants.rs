@@ -1,5 +1,5 @@
 //! `cargo xtask mutants`: promise R14. Breaks the code that protects, one small change at a time, and lists the changes
-//! that no test notices. What was found, and what cannot matter, stands in docs/mutants.md; `.cargo/mutants.toml` leaves the
+//! that no test notices. What was found, and what cannot matter, stands in docs/carrying-on/mutants.md; `.cargo/mutants.toml` leaves the
 //! latter out.
 
 use crate::disk::make_folder;
