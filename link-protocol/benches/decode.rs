@@ -1,5 +1,5 @@
-//! What a frame costs to encode and to decode.
-#![allow(missing_docs)] // criterion's macros
+//! Cost of encoding and decoding a frame.
+#![allow(missing_docs)] // required by criterion's macros
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use link_protocol::{Chunk, Decoder, Header, MAX_CHUNK, MAX_ENCODED, Message, Request, encode};
 use std::hint::black_box;

@@ -1,33 +1,33 @@
-//! Authority: the class of each request, and the conditions under which a robot lets a class act. The robot enforces them
-//! before the request is looked at further; the tables in `docs/security.md` and `docs/reference/protocol.md` are generated
-//! from here.
+//! Authority: the class of each request, and the conditions under which the robot executes a class. The robot checks them
+//! before it evaluates the request. The tables in `docs/security.md` and `docs/reference/protocol.md` are generated from this
+//! module.
 
 use crate::{ANGLE_UNIT_RAD, Configuration, Joint, PulseRange, Request, ServoSettings, StateName};
 
-/// Class of a request, by the harm that it could do.
+/// Class of a request, by its possible harm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum RequestClass {
-    /// Reports, and changes nothing.
+    /// Reports without any change.
     Read,
     /// Ends motion.
     Stop,
-    /// Sets something that does not let the servos do more.
+    /// Changes a setting without giving the servos more freedom.
     Narrowing,
-    /// Sets something that lets the servos do more, sets a first key, or leaves for the boot loader.
+    /// Gives the servos more freedom, sets a first key, or enters the boot loader.
     Widening,
-    /// Trims a servo within [`SettingsHeld::MAX_SHIFT_RAD`].
+    /// Trims a servo by at most [`SettingsHeld::MAX_SHIFT_RAD`].
     Trim,
-    /// Trims a servo further than that.
+    /// Trims a servo by more than that.
     WideTrim,
     /// Clears a latch.
     Clearing,
     /// Fills or replaces the stored table.
     Storing,
-    /// Turns pulses on, or changes the motion of a powered robot.
+    /// Switches pulses on, or changes the motion of a powered robot.
     Powering,
 }
 
-/// Conditions under which a class of requests acts.
+/// Conditions under which a class of requests is executed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(clippy::struct_excessive_bools)] // the columns of a table
 pub struct Needs {
@@ -35,18 +35,18 @@ pub struct Needs {
     pub signature: bool,
     /// A fresh keep-alive of the same session within the lease.
     pub freshness: bool,
-    /// Somebody at the robot: the USB cable, or the bench window.
+    /// A person at the robot: the USB cable, or the bench window.
     pub presence: bool,
-    /// State of the brain.
+    /// Required state of the brain.
     pub state: StateNeeded,
-    /// Drawn from the wear budget of the flash, which limits the rate of writes.
+    /// Uses the wear budget of the flash, which limits the rate of writes.
     pub wear: bool,
 }
 
-/// State of the brain in which a class of requests acts.
+/// State of the brain that a class of requests requires.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StateNeeded {
-    /// Any.
+    /// Any state.
     Any,
     /// No joint moves: pulses are off, or hold a pose.
     Still,
@@ -55,7 +55,7 @@ pub enum StateNeeded {
 }
 
 impl StateNeeded {
-    /// The state is one of those.
+    /// Returns true if the state satisfies the requirement.
     pub fn includes(self, state: StateName) -> bool {
         match self {
             Self::Any => true,
@@ -82,7 +82,7 @@ impl RequestClass {
         Self::Powering,
     ];
 
-    /// Conditions under which requests of this class act.
+    /// Conditions under which requests of this class are executed.
     pub fn needs(self) -> Needs {
         let read = Needs {
             signature: true,
@@ -130,7 +130,7 @@ impl RequestClass {
 }
 
 impl Request {
-    /// Class of this request. `widens` is evaluated only for settings: see [`SettingsHeld::is_widened_by`].
+    /// Class of this request. `widens` is evaluated only for settings; see [`SettingsHeld::is_widened_by`].
     pub fn class(&self, widens: impl FnOnce() -> bool) -> RequestClass {
         match self {
             Self::Status
@@ -169,7 +169,7 @@ impl Request {
     }
 }
 
-/// Settings of the robot, with which a new setting is compared.
+/// Settings of the robot, with which a request is compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SettingsHeld {
     /// Configuration in force.
@@ -178,7 +178,7 @@ pub struct SettingsHeld {
     pub built: Configuration,
     /// Servo maps in force.
     pub servos: [ServoSettings; 2],
-    /// Servo maps as they were last set with presence, or as built.
+    /// Servo maps as last set with presence, or as built.
     pub at_bench: [ServoSettings; 2],
     /// Pulse ranges in force.
     pub ranges: [PulseRange; 2],
@@ -187,12 +187,13 @@ pub struct SettingsHeld {
 }
 
 impl SettingsHeld {
-    /// Angle by which a joint may be moved against its pulses, in sum over centre, slope and trim, without presence: 1°.
+    /// Largest rotation of a joint at constant pulses without presence, summed over centre, slope and trim: 1°.
     pub const MAX_SHIFT_RAD: f32 = core::f32::consts::PI / 180.0;
-    /// Share by which a length may differ from that as built without presence.
+    /// Largest relative deviation of a length from that as built without presence.
     pub const MAX_LENGTH_SHARE: f32 = 0.1;
 
-    /// A request lets the servos do more than is accepted without presence. Repeating the setting in force does not.
+    /// Returns true if a request gives the servos more freedom than is allowed without presence. Repeating the present setting
+    /// does not.
     pub fn is_widened_by(&self, request: &Request) -> bool {
         match request {
             Request::Configure(new) => self.is_configuration_wider(new),
@@ -213,7 +214,7 @@ impl SettingsHeld {
         }
     }
 
-    /// Lengths far from those as built, or limits beyond those as built.
+    /// Returns true for lengths far from those as built, or limits beyond those as built.
     fn is_configuration_wider(&self, new: &Configuration) -> bool {
         let lengths = |of: &Configuration| [of.middle_m, of.front_m, of.back_m];
         let same = |one: f32, other: f32| one.to_bits() == other.to_bits();
@@ -230,7 +231,7 @@ impl SettingsHeld {
         far || beyond(|of| of.max_angle) || beyond(|of| of.max_rate)
     }
 
-    /// Another direction, or a shift of more than [`Self::MAX_SHIFT_RAD`].
+    /// Returns true for another direction, or a shift of more than [`Self::MAX_SHIFT_RAD`].
     fn is_map_far(&self, joint: Joint, new: &ServoSettings) -> bool {
         if *new == self.servos[joint.index()] {
             return false;
@@ -241,7 +242,7 @@ impl SettingsHeld {
         let trim = (f32::from(new.trim) - f32::from(bench.trim)).abs() * ANGLE_UNIT_RAD;
         let slope = (new.slope_rad_per_us / bench.slope_rad_per_us - 1.0).abs()
             * self.configuration.max_angle;
-        // A slope that is NaN is far, too.
+        // The comparison also rejects a NaN.
         let near = centre + trim + slope <= Self::MAX_SHIFT_RAD;
         new.reversed != bench.reversed || !near
     }

@@ -1,5 +1,5 @@
-//! CRC-32C (Castagnoli), the one checksum of frames and tables: it finds every error of up to five bits at the lengths
-//! of a frame, where postcard and COBS alone accept every tenth corrupted frame.
+//! CRC-32C (Castagnoli), the checksum of frames and tables. It detects every error of up to five bits at the lengths of a
+//! frame; postcard and COBS alone accept every tenth corrupted frame.
 
 use crc::{CRC_32_ISCSI, Crc, Digest, Table};
 
@@ -14,7 +14,7 @@ pub fn crc32c(bytes: &[u8]) -> u32 {
     CRC_32C.checksum(bytes)
 }
 
-/// CRC-32C of bytes that come in pieces.
+/// Incremental CRC-32C.
 ///
 /// ```
 /// use link_protocol::{Checksum, crc32c};
@@ -27,7 +27,7 @@ pub fn crc32c(bytes: &[u8]) -> u32 {
 pub struct Checksum(Digest<'static, u32, Table<1>>);
 
 impl Checksum {
-    /// The checksum of nothing yet.
+    /// Checksum of an empty input.
     pub fn new() -> Self {
         Self(CRC_32C.digest())
     }
@@ -37,7 +37,7 @@ impl Checksum {
         self.0.update(bytes);
     }
 
-    /// The CRC-32C of everything appended.
+    /// CRC-32C of all bytes so far.
     pub fn finish(self) -> u32 {
         self.0.finalize()
     }

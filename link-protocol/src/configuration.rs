@@ -19,7 +19,7 @@ impl Joint {
     }
 }
 
-/// How the tangential drag coefficient `c_t` is tied to viscosity: the three forms of the model, SI.
+/// Parametrisation of the tangential drag coefficient `c_t`: the three forms of the model, SI.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
 pub enum TangentialDrag {
     /// Common `c_t = 2πμ / value`; the value is ln(l/a).
@@ -30,8 +30,8 @@ pub enum TangentialDrag {
     OverViscosity(f32),
 }
 
-/// Geometry and drag for the on-board pose, and limits. It may tighten the firmware's limits, never loosen them;
-/// a pair of limits that needs more than one second to neutral (`max_angle / max_rate > 1 s`) is refused.
+/// Geometry and drag for the on-board pose, and limits. It may tighten the firmware's limits, never loosen them. Limits with
+/// which a ramp to neutral takes more than one second (`max_angle / max_rate > 1 s`) are refused.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
 pub struct Configuration {
     /// Length of the middle link l₀, m.
@@ -44,7 +44,7 @@ pub struct Configuration {
     pub chi: f32,
     /// Tangential drag.
     pub tangential_drag: TangentialDrag,
-    /// Radius of the sphere on the middle link, m; 0 for none.
+    /// Radius of the sphere on the middle link, m; 0 for no sphere.
     pub sphere_radius_m: f32,
     /// Largest |φ|, rad.
     pub max_angle: f32,
@@ -52,7 +52,7 @@ pub struct Configuration {
     pub max_rate: f32,
 }
 
-/// The map of one servo from joint angle to pulse: `pulse = centre ± (angle + trim) / slope`.
+/// Map of one servo from joint angle to pulse: `pulse = centre ± (angle + trim) / slope`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
 pub struct ServoSettings {
     /// Pulse of the straight joint, ns.
@@ -65,8 +65,8 @@ pub struct ServoSettings {
     pub trim: i16,
 }
 
-/// The pulses that a servo's end stops allow: a robot sends none outside. It tightens the firmware's own window, never
-/// loosens it; joint angles beyond are refused with the gait that has them.
+/// Pulse range within a servo's end stops. The robot sends no pulse outside it. It tightens the firmware's own window, never
+/// loosens it; gaits with joint angles beyond it are refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct PulseRange {
     /// Shortest pulse, ns.
@@ -75,16 +75,16 @@ pub struct PulseRange {
     pub longest_ns: u32,
 }
 
-/// Hash of the settings on which a host's checks of a play rest: CRC-32C over the postcard bytes of the configuration, the maps
-/// of front and back servo and their pulse ranges, in this order. [`crate::Request::PulseRange`] reports the range in force, which
-/// is the firmware's window if none is set.
+/// Hash of the settings on which a host's checks of a play depend: CRC-32C over the postcard bytes of the configuration, the
+/// maps of front and back servo and their pulse ranges, in this order. [`crate::Request::PulseRange`] reports the range in
+/// force, which is the firmware's window if no range is set.
 pub fn settings_crc32(
     configuration: &Configuration,
     servos: &[ServoSettings; 2],
     ranges: &[PulseRange; 2],
 ) -> u32 {
     let mut bytes = [0; 128];
-    // 33 bytes, twice 13 and twice 10 at most.
+    // At most 33 bytes, twice 13 and twice 10.
     let len = postcard::to_slice(&(configuration, servos, ranges), &mut bytes)
         .map_or(0, |written| written.len());
     crate::crc32c(&bytes[..len])

@@ -1,4 +1,4 @@
-//! From bytes to messages, whatever the bytes: splits, noise and lost delimiters cost frames, never a wrong message.
+//! Frame decoder for arbitrary bytes: splits, noise and lost delimiters lose frames, but never yield a wrong message.
 //!
 //! ```text
 //!              0x00                     byte
@@ -8,7 +8,7 @@
 //!        more than a frame holds
 //! ```
 //!
-//! Each run of bytes between zeros ends in exactly one counter of [`DecodeCounters`].
+//! Each run of bytes between zeros increments exactly one counter of [`DecodeCounters`].
 
 use crate::{
     BodyError, HEADER, Header, KIND_SIGNED, Kind, MAX_RAW, Message, Signature, TRAILER, crc32c,
@@ -16,36 +16,36 @@ use crate::{
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
-/// A whole frame: its CRC was right.
+/// Complete frame with a correct CRC.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Received {
     /// Version, session and sequence number.
     pub header: Header,
-    /// The message, or why the body is none.
+    /// The message, or the error of its body.
     pub message: Result<Message, BodyError>,
-    /// The signature, where the frame carried one. It is not checked here.
+    /// Signature of the frame, if any. It is not verified here.
     pub signature: Option<Signature>,
 }
 
-/// What became of the bytes between zeros.
+/// Outcomes of the runs of bytes between zeros.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct DecodeCounters {
-    /// Whole frames with a message.
+    /// Complete frames with a message.
     pub ok: u32,
-    /// Frames whose CRC is wrong, or too short to have one.
+    /// Frames with a wrong CRC, or too short for one.
     pub bad_crc: u32,
-    /// More bytes than a frame holds.
+    /// Runs that exceed a frame.
     pub overflow: u32,
-    /// Bytes that are no COBS.
+    /// Runs that are no valid COBS.
     pub bad_cobs: u32,
-    /// Whole frames whose body left bytes over.
+    /// Complete frames with extra bytes after the message.
     pub trailing_bytes: u32,
-    /// Whole frames that are no message of this version otherwise.
+    /// Complete frames whose body is no message of this version for another reason.
     pub not_understood: u32,
 }
 
 impl DecodeCounters {
-    /// Everything that was no message.
+    /// Total of all runs without a message.
     pub fn bad(&self) -> u32 {
         self.bad_crc
             .wrapping_add(self.overflow)
@@ -55,29 +55,29 @@ impl DecodeCounters {
     }
 }
 
-/// COBS of a frame: one byte more.
+/// Length of the COBS encoding of the longest frame: one byte more.
 const MAX_COBS: usize = MAX_RAW + 1;
 
-/// Takes bytes in any split and gives messages.
+/// Decoder of messages from bytes in any split.
 #[derive(Clone, Debug)]
 pub struct Decoder {
     state: State,
     bytes: [u8; MAX_COBS],
-    /// Bytes of the frame received last, which stand first in `bytes`.
+    /// Length of the last frame, stored at the start of `bytes`.
     whole: usize,
     counters: DecodeCounters,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
-    /// Dropping bytes until a zero.
+    /// Discarding bytes until a zero.
     Hunting,
-    /// This many bytes since the last zero.
+    /// Number of bytes since the last zero.
     Collecting(usize),
 }
 
 impl Decoder {
-    /// A decoder at the start of a stream.
+    /// Returns a decoder at the start of a stream.
     pub const fn new() -> Self {
         Self {
             state: State::Collecting(0),
@@ -94,13 +94,13 @@ impl Decoder {
         }
     }
 
-    /// What was counted so far.
+    /// Counts so far.
     pub fn counters(&self) -> DecodeCounters {
         self.counters
     }
 
-    /// What the signature of the frame that came last covers: all before its tag. Empty where it was not signed; holds
-    /// until the next byte.
+    /// Bytes of the last frame that its signature covers: everything before the tag. Empty for an unsigned frame; valid until
+    /// the next byte.
     pub fn signed_bytes(&self) -> &[u8] {
         let (_, signature) = self.body_and_signature();
         let unsigned = if signature.is_some() {
@@ -112,14 +112,14 @@ impl Decoder {
         self.bytes.get(..covered).unwrap_or_default()
     }
 
-    /// Kind and body of the frame that came last: what can be told of one that is no message of this version. `None` where
-    /// no message has its kind, or where it is too short for its signature; holds until the next byte.
+    /// Kind and body of the last frame, also if it is no message of this version. Returns `None` for an unknown kind, or if the
+    /// frame is too short for its signature. Valid until the next byte.
     pub fn kind_and_body(&self) -> Option<(Kind, &[u8])> {
         let kind = Kind::from_byte(self.kind() & !KIND_SIGNED)?;
         Some((kind, self.body_and_signature().0?))
     }
 
-    /// The last byte of the header.
+    /// Kind byte: the last byte of the header.
     fn kind(&self) -> u8 {
         self.bytes[HEADER - 1]
     }
@@ -129,7 +129,7 @@ impl Decoder {
         split_signature(self.kind(), self.bytes.get(HEADER..end).unwrap_or_default())
     }
 
-    /// Takes one byte; gives a frame where this byte completed one whose CRC is right.
+    /// Adds one byte. Returns the frame that it completes, if the CRC is correct.
     pub fn push(&mut self, byte: u8) -> Option<Received> {
         match (self.state, byte) {
             (State::Hunting, 0) => self.state = State::Collecting(0),
@@ -193,7 +193,7 @@ impl Default for Decoder {
     }
 }
 
-/// Header and body of raw bytes whose CRC is right.
+/// Splits raw bytes into header and body. Returns `None` if the CRC is wrong.
 fn checked(raw: &[u8]) -> Option<(&[u8; HEADER], &[u8])> {
     let (covered, crc) = raw.split_last_chunk::<TRAILER>()?;
     let (header, body) = covered.split_first_chunk::<HEADER>()?;

@@ -1,4 +1,4 @@
-//! The frame: header, body, checksum, in COBS between zeros. Encoding goes into the caller's buffer.
+//! Frame: header, body and checksum in COBS between zeros. Encoding writes to the caller's buffer.
 
 use crate::{
     HEADER, KIND_SIGNED, MAX_ENCODED, MAX_RAW, Message, PROTOCOL_CURRENT, TRAILER, crc32c,
@@ -18,14 +18,14 @@ pub enum Direction {
 pub struct Header {
     /// Protocol version of the body.
     pub version: u8,
-    /// Session the frame belongs to.
+    /// Session of the frame.
     pub session: u16,
-    /// Ties replies to requests; counts telemetry.
+    /// Matches replies to requests; counts telemetry.
     pub sequence: u16,
 }
 
 impl Header {
-    /// A header of the version spoken here.
+    /// Header with the present protocol version.
     pub fn new(session: u16, sequence: u16) -> Self {
         Self {
             version: PROTOCOL_CURRENT,
@@ -35,7 +35,7 @@ impl Header {
     }
 }
 
-/// The kind byte of a frame, without [`KIND_SIGNED`].
+/// Kind byte of a frame, without [`KIND_SIGNED`].
 ///
 /// ```
 /// use link_protocol::{Kind, Message, Request};
@@ -63,7 +63,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// The kind of this byte, if there is one.
+    /// Kind of this byte. Returns `None` if it is unknown.
     pub fn from_byte(byte: u8) -> Option<Self> {
         Some(match byte {
             1 => Self::Hello,
@@ -78,23 +78,23 @@ impl Kind {
     }
 }
 
-/// Signature of a frame, between body and CRC: a counter that only grows, and a truncated keyed tag over header,
-/// body and counter ([`crate::Seal`]). A robot without a key reads past it.
+/// Signature of a frame, between body and CRC: a monotonic counter, and a truncated keyed tag over header, body and counter
+/// ([`crate::Seal`]). A robot without a key skips it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Signature {
-    /// Never repeats under one key; 48 bits.
+    /// Counter, 48 bits. It never repeats under one key.
     pub counter: u64,
     /// Truncated tag.
     pub tag: [u8; 8],
 }
 
 impl Signature {
-    /// Bytes in the frame.
+    /// Length in the frame, bytes.
     pub const LEN: usize = 14;
-    /// Bytes of the tag: the last of a signature.
+    /// Length of the tag, which ends the signature, bytes.
     pub const TAG: usize = 8;
 
-    /// The counter as it stands in the frame.
+    /// Encoded counter.
     pub(crate) fn counter_bytes(counter: u64) -> [u8; 6] {
         let [c0, c1, c2, c3, c4, c5, _, _] = counter.to_le_bytes();
         [c0, c1, c2, c3, c4, c5]
@@ -116,26 +116,26 @@ impl Signature {
     }
 }
 
-/// The header as it stands in the frame.
+/// Encoded header.
 pub(crate) fn header_bytes(header: Header, kind: u8) -> [u8; HEADER] {
     let [s0, s1] = header.session.to_le_bytes();
     let [q0, q1] = header.sequence.to_le_bytes();
     [header.version, s0, s1, q0, q1, kind]
 }
 
-/// Reasons for which a frame cannot be encoded.
+/// Reason why a frame cannot be encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EncodeError {
-    /// The body is larger than a frame holds.
+    /// The body exceeds a frame.
     BodyTooLong,
     /// The buffer is shorter than [`MAX_ENCODED`].
     BufferTooShort,
 }
 
-/// Encodes `message` under `header` into `out`, burst start and delimiter included; returns the number of bytes.
+/// Encodes `message` under `header` into `out`, with burst start and delimiter. Returns the number of bytes.
 ///
 /// # Errors
-/// `out` is shorter than [`MAX_ENCODED`]; no message has a body that is too long.
+/// `out` is shorter than [`MAX_ENCODED`]. The body of a message always fits.
 pub fn encode(header: Header, message: &Message, out: &mut [u8]) -> Result<usize, EncodeError> {
     let mut body = [0; crate::MAX_BODY];
     let body = message
@@ -144,10 +144,10 @@ pub fn encode(header: Header, message: &Message, out: &mut [u8]) -> Result<usize
     encode_body(header, message.kind() as u8, body, None, out)
 }
 
-/// Encodes any body, signed or not: for stored replies, signatures and tests.
+/// Encodes an arbitrary body, signed or not: for stored replies, signatures and tests.
 ///
 /// # Errors
-/// `out` is shorter than [`MAX_ENCODED`], or the body with its signature is too long for a frame.
+/// `out` is shorter than [`MAX_ENCODED`], or body and signature exceed a frame.
 ///
 /// ```
 /// use link_protocol::{Decoder, Header, Kind, MAX_ENCODED, Message, Request, encode_body};

@@ -1,55 +1,54 @@
-//! The greeting, which is the same in all versions, so that two ends of different versions can report it.
+//! Greeting: equal in all versions, so that ends of different versions can report the mismatch.
 
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
-/// Host to robot: opens a session. The same `host_nonce` again is the same greeting (a retransmission) and keeps the
-/// session; a new one opens the next session. Changes no state of motion. Its frame's session number is ignored.
+/// Host to robot: opens a session. A repeated `host_nonce` is a retransmission and keeps the session; a new one opens the next
+/// session. The motion is not affected. The session number of its frame is ignored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Hello {
-    /// Lowest protocol version the host understands.
+    /// Lowest protocol version that the host supports.
     pub protocol_min: u8,
-    /// Protocol version the host speaks.
+    /// Protocol version of the host.
     pub protocol_current: u8,
     /// The host's [`crate::SCHEMA_KEY`].
     pub schema_key: [u8; 8],
-    /// Drawn anew by the host for each session it wants.
+    /// Random number of the host, new for each session.
     pub host_nonce: u32,
 }
 
-/// Robot to host: the answer to [`Hello`]; its frame carries the new session number and the Hello's sequence number.
+/// Robot to host: reply to [`Hello`]. Its frame carries the new session number and the Hello's sequence number.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
 pub struct HelloReply {
-    /// The nonce of the [`Hello`] this answers.
+    /// Nonce of the [`Hello`].
     pub host_nonce: u32,
-    /// Lowest protocol version the robot understands.
+    /// Lowest protocol version that the robot supports.
     pub protocol_min: u8,
-    /// Protocol version the robot speaks.
+    /// Protocol version of the robot.
     pub protocol_current: u8,
     /// The robot's [`crate::SCHEMA_KEY`].
     pub schema_key: [u8; 8],
     /// Version and commit of the firmware.
     pub firmware: FirmwareVersion,
-    /// What carries the brain.
+    /// Board type.
     pub board: Board,
-    /// Why the robot last started.
+    /// Cause of the last start.
     pub reset_reason: ResetReason,
-    /// A message of a crash before that start waits for [`crate::Request::CrashMessage`]. On the wire it is the lowest
-    /// bit of a byte whose other bits are spare: sent as 0, ignored here.
+    /// A crash message from before that start is available through [`crate::Request::CrashMessage`]. On the wire it is the
+    /// lowest bit of a byte with seven spare bits: sent as 0, ignored on reception.
     #[serde(with = "lowest_bit")]
     pub crash_message: bool,
-    /// The session this greeting opened; every later frame carries it.
+    /// Session that the greeting opened; every later frame carries it.
     pub session: u16,
-    /// Drawn at boot: a change tells the host that the robot restarted.
+    /// Random number of this start: it changes if the robot restarts.
     pub boot_nonce: u32,
-    /// What the robot allows at present.
+    /// Limits in force.
     pub limits: RobotLimits,
-    /// Bytes the robot's receive buffer holds: the most that may be in flight.
+    /// Capacity of the robot's receive buffer, bytes: the most that may be in flight.
     pub buffer: u16,
 }
 
-/// How a [`HelloReply`] begins: what it tells of itself even where the rest names a board or a reason that was appended
-/// since, and is no message to this end.
+/// Start of a [`HelloReply`], which decodes even if the rest has a newer board or reset reason.
 ///
 /// ```
 /// use link_protocol::{FirmwareVersion, HelloReplyStart};
@@ -75,7 +74,7 @@ pub struct HelloReplyStart {
 }
 
 impl HelloReplyStart {
-    /// The start of a body; `None` where it is too short.
+    /// Decodes the start of a body. Returns `None` if the body is too short.
     pub fn of_body(body: &[u8]) -> Option<Self> {
         let (start, _) = postcard::take_from_bytes(body).ok()?;
         Some(start)
@@ -94,11 +93,11 @@ impl From<&HelloReply> for HelloReplyStart {
     }
 }
 
-/// A flag in a byte that leaves room for seven more, in a message that may never grow.
+/// Flag in a byte with seven spare bits, for a message that must never grow.
 mod lowest_bit {
     use serde::{Deserialize, Deserializer, Serializer};
 
-    #[allow(clippy::trivially_copy_pass_by_ref)] // serde's signature
+    #[allow(clippy::trivially_copy_pass_by_ref)] // signature required by serde
     pub(super) fn serialize<S: Serializer>(flag: &bool, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_u8(u8::from(*flag))
     }
@@ -119,14 +118,14 @@ pub struct FirmwareVersion {
     pub minor: u8,
     /// Patch version.
     pub patch: u8,
-    /// First eight hexadecimal digits of the commit in ASCII; zeros where unknown.
+    /// First eight hexadecimal digits of the commit in ASCII; zeros if unknown.
     pub commit: [u8; 8],
 }
 
-/// What carries the brain.
+/// Board on which the brain runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Board {
-    /// The twin on a host.
+    /// Digital twin on a host.
     Twin,
     /// Arduino Nano RP2040 Connect.
     NanoRp2040Connect,
@@ -134,20 +133,20 @@ pub enum Board {
     Pico,
 }
 
-/// Why the robot last started.
+/// Cause of the last start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum ResetReason {
-    /// Power was applied, or failed for a moment.
+    /// Power was switched on, or failed for a moment.
     PowerOn,
-    /// The watchdog found the control task hung.
+    /// The watchdog detected a hung control task.
     Watchdog,
     /// The program crashed and reset itself.
     Crash,
-    /// The reset pin or the probe.
+    /// The reset pin or a debug probe.
     Pin,
 }
 
-/// What the robot allows: the firmware's limits, tightened by the configuration.
+/// Limits in force: the firmware's, tightened by the configuration.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
 pub struct RobotLimits {
     /// Largest |φ|, rad.
@@ -158,8 +157,8 @@ pub struct RobotLimits {
     pub pulse_min_ns: u32,
     /// Longest pulse, ns.
     pub pulse_max_ns: u32,
-    /// Most knots of a table.
+    /// Largest number of knots of a table.
     pub max_knots: u16,
-    /// Bytes of chunks that may be in flight.
+    /// Most bytes of chunks in flight.
     pub upload_window: u16,
 }

@@ -1,6 +1,5 @@
-//! The contract of the wire between host and robot, and nothing else: every message that crosses the serial link,
-//! the frame that carries it and the version of both. There is no behaviour here; who may send what, when, and what
-//! happens then is decided in `gait-player` (the robot) and `host-link` (the host).
+//! Wire protocol between host and robot: every message of the serial link, the frame that carries it, and the version of both.
+//! The crate has no behaviour; `gait-player` (the robot) and `host-link` (the host) implement the two ends.
 //!
 //! # A frame, byte by byte
 //!
@@ -10,27 +9,26 @@
 //!     burst start                                                              delimiter
 //! ```
 //!
-//! At most [`MAX_RAW`] bytes before COBS. The CRC covers header and body and is checked before the body is looked at;
-//! the body must then be used up to its last byte. A leading zero ends whatever garbage came before.
+//! At most [`MAX_RAW`] bytes before COBS. The CRC covers header and body and is checked before the body is decoded; decoding
+//! must consume the whole body. A leading zero terminates any garbage before the frame.
 //!
 //! # Versions
 //!
-//! This is version 1.0: the byte [`PROTOCOL_CURRENT`]. [`PROTOCOL_MIN`] is the oldest version still understood.
-//! [`Hello`], [`HelloReply`], [`Request::Stop`], [`Request::EStop`] and the [`Reply::Done`] that answers a stop keep their
-//! encoding in every version, and are read whatever the version byte of their frame. So two ends that do not match can report
-//! it, and every host stops every robot. Enum variants are only appended. `tests/golden/` holds the bytes of every message,
-//! one file per version and one for the messages of every version; the files are never edited.
+//! This is version 1.0: the byte [`PROTOCOL_CURRENT`]. [`PROTOCOL_MIN`] is the oldest supported version. [`Hello`],
+//! [`HelloReply`], [`Request::Stop`], [`Request::EStop`] and the [`Reply::Done`] to a stop have the same encoding in every
+//! version, and are read regardless of the version byte of their frame. So incompatible ends can report the mismatch, and every
+//! host can stop every robot. Enum variants are only appended. `tests/golden/` holds the bytes of every message: one file per
+//! version, and one for the messages common to all versions. The files are never edited.
 //!
 //! # Authority
 //!
 //! [`Request::class`] gives each request its [`RequestClass`], and [`RequestClass::needs`] the conditions under which the robot
-//! lets it act. The robot enforces them before anything else; the tables of the documentation are generated from them.
+//! executes it. The robot checks them first; the tables of the documentation are generated from them.
 //!
 //! # Authentication
 //!
-//! The top bit of `kind` is [`KIND_SIGNED`]: such a frame carries a [`Signature`] (monotonic counter and truncated
-//! keyed tag) between body and CRC. Robots without a key read past it; unsigned frames are unchanged by it. What signs and
-//! verifies is a [`Seal`].
+//! The top bit of `kind` is [`KIND_SIGNED`]: such a frame carries a [`Signature`] (monotonic counter and truncated keyed tag)
+//! between body and CRC. Robots without a key skip it; unsigned frames do not change. A [`Seal`] signs and verifies.
 //!
 //! # An example
 //!
@@ -82,40 +80,40 @@ pub use request::{Begin, Checked, Chunk, Follow, Play, Request};
 pub use seal::{Binding, Key, Seal, encode_signed};
 pub use telemetry::{Flags, Heartbeat, Pong, Pose, StateName, StopCause, Telemetry};
 
-/// Lowest protocol version this crate understands.
+/// Lowest supported protocol version.
 pub const PROTOCOL_MIN: u8 = 0x10;
-/// The protocol version this crate speaks: 1.0. The upper four bits are the major number, the lower four the minor one.
-/// Builds before the first release used 0.1 and 0.2 (the bytes 1 and 2); nothing reads them.
+/// Protocol version of this crate: 1.0. The upper four bits are the major number, the lower four the minor one. Builds before
+/// the first release used 0.1 and 0.2 (the bytes 1 and 2), which are not supported.
 pub const PROTOCOL_CURRENT: u8 = 0x10;
-/// Longest motion that a robot may have ahead of it without a host, µs.
+/// Longest scheduled motion without a host, µs.
 pub const MAX_DETACHED_US: u64 = 3_600_000_000;
-/// Most raw bytes of a frame: header, body and CRC, before COBS.
+/// Largest frame before COBS, bytes: header, body and CRC.
 pub const MAX_RAW: usize = 128;
-/// Bytes of the header.
+/// Length of the header, bytes.
 pub const HEADER: usize = 6;
-/// Bytes of the CRC.
+/// Length of the CRC, bytes.
 pub const TRAILER: usize = 4;
-/// Most bytes of a body.
+/// Largest body, bytes.
 pub const MAX_BODY: usize = MAX_RAW - HEADER - TRAILER;
-/// Most bytes of a frame on the wire: burst start, COBS of [`MAX_RAW`] bytes (one more), delimiter.
+/// Largest frame on the wire, bytes: burst start, COBS of [`MAX_RAW`] bytes (one more), delimiter.
 pub const MAX_ENCODED: usize = MAX_RAW + 3;
-/// Most bytes of table data in one [`Chunk`].
+/// Most table bytes in one [`Chunk`].
 pub const MAX_CHUNK: usize = 104;
-/// The same where the frame is signed. A whole number of knots is not needed: pieces may split one.
+/// Most table bytes in a signed [`Chunk`]. Chunks may split a knot.
 pub const MAX_SIGNED_CHUNK: usize = MAX_CHUNK - Signature::LEN;
-/// Most knots of a gait table; a knot is two i16 of [`ANGLE_UNIT_RAD`], four bytes.
+/// Largest number of knots of a gait table; a knot is two i16 of [`ANGLE_UNIT_RAD`], four bytes.
 pub const MAX_KNOTS: usize = 512;
-/// Most bytes of a gait table.
+/// Largest gait table, bytes.
 pub const MAX_TABLE: usize = 4 * MAX_KNOTS;
-/// The unit of angles in tables and telemetry, in radians.
+/// Unit of angles in tables and telemetry, rad.
 pub const ANGLE_UNIT_RAD: f32 = 1e-4;
 /// Top bit of the kind byte: the frame carries a [`Signature`].
 pub const KIND_SIGNED: u8 = 0x80;
-/// Identifies the messages of version 1.0 by their structure ([`postcard_schema`]'s key of all messages as they were frozen).
-/// Two ends with the same key read the same fields. Variants appended since change no byte of the earlier ones; an end that
-/// does not know a variant reports it ([`Refusal::NotUnderstood`]).
+/// Identifier of the messages of version 1.0 by their structure ([`postcard_schema`]'s key of all messages as they were
+/// frozen). Two ends with the same key read the same fields. Variants appended since do not change the encoding of earlier
+/// ones; an end that does not know a variant reports it ([`Refusal::NotUnderstood`]).
 pub const SCHEMA_KEY: [u8; 8] = [0x4D, 0x5F, 0x70, 0xF7, 0x8B, 0x7A, 0x68, 0x1C];
-/// Key of the structure of all messages as they are now, appended variants included: for the golden files, never on the wire.
+/// Key of the present structure of all messages, with appended variants: for the golden files, never on the wire.
 pub const SCHEMA_NOW: [u8; 8] =
     postcard_schema::key::Key::for_path::<message::Schemas>("swimmer/link/v1").to_bytes();
 

@@ -1,4 +1,4 @@
-//! All messages in one enum, and their bodies' decoding: the kind says which type, and every byte must be used.
+//! All messages in one enum, and the decoder of bodies: the kind selects the type, and every byte must be consumed.
 
 use crate::{Heartbeat, Hello, HelloReply, Kind, Pong, Reply, Request, Telemetry};
 use postcard_schema::Schema;
@@ -10,23 +10,23 @@ use serde::{Deserialize, Serialize};
 pub enum Message {
     /// Opens a session.
     Hello(Hello),
-    /// Answers it.
+    /// Reply to the greeting.
     HelloReply(HelloReply),
-    /// Asks for something.
+    /// Request of the host.
     Request(Request),
-    /// Answers it.
+    /// Reply to a request.
     Reply(Reply),
     /// Sent by the robot without a request.
     Telemetry(Telemetry),
-    /// Keep-alive: renews the lease while it is fresh, and requests the time.
+    /// Keep-alive: renews the lease if it is fresh, and requests the robot's time.
     Heartbeat(Heartbeat),
-    /// Answers it with the time.
+    /// Reply to a keep-alive, with the robot's time.
     Pong(Pong),
 }
 
-/// All types whose structure enters the schema key.
+/// All types that determine the schema key.
 #[derive(Schema)]
-#[allow(dead_code)] // exists for its schema only
+#[allow(dead_code)] // only its schema is used
 pub(crate) struct Schemas {
     hello: Hello,
     hello_reply: HelloReply,
@@ -37,22 +37,22 @@ pub(crate) struct Schemas {
     pong: Pong,
 }
 
-/// Reasons for which the body of a whole frame is not a message.
+/// Reason why the body of a complete frame is not a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BodyError {
-    /// The frame's version is outside [`crate::PROTOCOL_MIN`]`..=`[`crate::PROTOCOL_CURRENT`], and it is neither a greeting nor a
-    /// stop nor the answer to one.
+    /// The frame's version is outside [`crate::PROTOCOL_MIN`]`..=`[`crate::PROTOCOL_CURRENT`], and it is neither a greeting nor
+    /// a stop nor a reply to one.
     Version(u8),
-    /// No message has this kind.
+    /// The kind is unknown.
     UnknownKind(u8),
     /// The body does not decode.
     Malformed,
-    /// The body decodes and this many bytes are left over.
+    /// The body decodes, but this many bytes follow.
     TrailingBytes(usize),
 }
 
 impl Message {
-    /// The kind byte of this message.
+    /// Kind byte of this message.
     pub fn kind(&self) -> Kind {
         match self {
             Self::Hello(_) => Kind::Hello,
@@ -68,7 +68,7 @@ impl Message {
     /// Encodes the body into `out`.
     ///
     /// # Errors
-    /// The body does not fit.
+    /// The buffer is too short.
     pub fn encode_body<'a>(&self, out: &'a mut [u8]) -> Result<&'a mut [u8], postcard::Error> {
         match self {
             Self::Hello(body) => postcard::to_slice(body, out),
@@ -81,7 +81,7 @@ impl Message {
         }
     }
 
-    /// Decodes the body of a frame whose CRC was right.
+    /// Decodes the body of a frame with a correct CRC.
     ///
     /// # Errors
     /// See [`BodyError`].
@@ -106,8 +106,8 @@ impl Message {
     }
 }
 
-/// Messages that every version reads, whatever the version byte: a stop, an e-stop, and the answer to either.
-/// Their bodies are one byte each, frozen like the greeting.
+/// Messages that every version reads: a stop, an e-stop, and the reply to either. Their bodies are one byte each, frozen like
+/// the greeting.
 fn frozen(kind: Kind, body: &[u8]) -> Option<Message> {
     match (kind, body) {
         (Kind::Request, [14]) => Some(Message::Request(Request::Stop)),

@@ -1,15 +1,15 @@
-//! Keys in frames: logs and traces keep zeros in their place.
+//! Redaction of keys in frames: logs and traces contain zeros instead.
 
 use crate::{HEADER, KIND_SIGNED, Key, Kind, MAX_RAW, TRAILER, crc32c};
 
 /// Variant of [`crate::Request::SetKey`] on the wire, followed by the variant of `Some`.
 const SET_KEY: [u8; 2] = [19, 1];
-/// COBS of the longest frame: one byte more.
+/// Length of the COBS encoding of the longest frame: one byte more.
 const MAX_COBS: usize = MAX_RAW + 1;
 
-/// Replaces the key in every frame that carries one ([`crate::Request::SetKey`]) by zeros, in place. `wire` holds frames as they
-/// cross the wire, with or without delimiters. A frame whose CRC was right has the right CRC afterwards; a signature in it no
-/// longer verifies. Returns true if anything was replaced.
+/// Replaces the key in every frame that carries one ([`crate::Request::SetKey`]) by zeros, in place. `wire` holds frames as on
+/// the wire, with or without delimiters. A correct CRC is corrected; a signature no longer verifies. Returns true if a key was
+/// replaced.
 ///
 /// ```
 /// use link_protocol::{Decoder, Header, Key, MAX_ENCODED, Message, Request, encode, redact_keys};
@@ -29,7 +29,7 @@ pub fn redact_keys(wire: &mut [u8]) -> bool {
     frames.fold(false, |any, frame| redact(frame) | any)
 }
 
-/// One frame between its zeros. Its length stays: COBS adds one byte to whatever fits a frame.
+/// Redacts one frame between its zeros. Its length stays, because COBS adds one byte to any frame.
 fn redact(frame: &mut [u8]) -> bool {
     let mut raw = [0; MAX_COBS];
     let Some(raw) = raw.get_mut(..frame.len()) else {
@@ -60,7 +60,7 @@ fn redact(frame: &mut [u8]) -> bool {
     let mut encoded = [0; MAX_COBS + 1];
     match cobs::try_encode(&raw[..length], &mut encoded) {
         Ok(written) if written == frame.len() => frame.copy_from_slice(&encoded[..written]),
-        _ => frame.fill(1), // no frame, and no key either
+        _ => frame.fill(1), // invalid frame, without a key
     }
     true
 }
@@ -104,7 +104,7 @@ mod tests {
             };
             let frame = &mut frame[..length.unwrap()];
             let before = received(frame).unwrap();
-            // With and without its delimiters, and among others.
+            // With and without delimiters, and among other frames.
             let others = [&[1, 1, 0][..], frame, frame, &[0, 5, 2, 3][..]].concat();
             for wire in [&frame[1..length.unwrap() - 1], frame, &others] {
                 let mut wire = wire.to_vec();

@@ -1,94 +1,94 @@
-//! Reasons for which the robot refuses, each with the numbers that an operator needs. Variants are only appended.
+//! Refusals of the robot, with the numbers that an operator needs. Variants are only appended.
 
 use crate::{Joint, StateName, VersionName};
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
-/// Reason for which a request was not done. Angles are in 1e-4 rad, rates in 1e-4 rad/s.
+/// Reason for a refusal. Angles are in 1e-4 rad, rates in 1e-4 rad/s.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Refusal {
     /// The frame's session is not the open one: greet again.
     StaleSession,
-    /// A later request acted already.
+    /// A later request has acted already.
     Superseded {
         /// Sequence number of the last request that acted.
         last: u16,
     },
-    /// The frame's protocol version is not understood.
+    /// The frame's protocol version is not supported.
     Version {
-        /// Lowest version understood.
+        /// Lowest supported version.
         min: u8,
-        /// Version spoken.
+        /// Present version.
         current: u8,
     },
-    /// The frame was whole but its body is no request of this version.
+    /// The frame was complete, but its body is no request of this version.
     NotUnderstood,
-    /// Arm first.
+    /// The robot is not armed.
     NotArmed,
-    /// An e-stop is latched: clear it first.
+    /// An e-stop is latched and must be cleared first.
     EStopped,
-    /// Not in this state.
+    /// The request is not allowed in this state.
     WrongState(StateName),
-    /// The battery is low, or was until less than 5 s ago.
+    /// The battery is low, or was within the last 5 s.
     BatteryLow {
-        /// Last measured, mV.
+        /// Last measurement, mV.
         measured_mv: u16,
-        /// The limit, mV.
+        /// Limit, mV.
         limit_mv: u16,
     },
-    /// Three resets in 60 s, or three starts in a row after runs of under 60 s: wait, then clear.
+    /// Arming is locked after three resets in 60 s, or three starts in a row after runs of under 60 s.
     ResetLoop {
-        /// Seconds until it may be cleared.
+        /// Seconds until the lock may be cleared.
         wait_s: u16,
     },
-    /// There is no table to play: upload one.
+    /// There is no table to play.
     NoTable,
-    /// There is one slot, number 0.
+    /// The slot does not exist; there is one slot, number 0.
     NoSuchSlot(u8),
-    /// A table has 4 bytes a knot, 2 to 512 knots.
+    /// The length is invalid: a table has 4 bytes per knot, 2 to 512 knots.
     BadLength(u16),
-    /// No upload of that number is open: begin again.
+    /// No upload of that number is open.
     NoUpload,
-    /// The chunk starts behind what is wanted, or reaches past the end.
+    /// The chunk starts after the expected offset, or exceeds the table.
     ChunkOutOfRange {
-        /// The next offset wanted.
+        /// Next expected offset.
         wanted: u16,
     },
-    /// Not all bytes have come.
+    /// Bytes are missing.
     Incomplete {
-        /// The next offset wanted.
+        /// Next expected offset.
         wanted: u16,
     },
-    /// The uploaded bytes are not those that Begin announced: begin again.
+    /// The uploaded bytes do not match the checksum of Begin.
     CrcMismatch {
-        /// Announced.
+        /// Announced checksum.
         expected: u32,
-        /// Received.
+        /// Checksum of the received bytes.
         received: u32,
     },
-    /// The gait, followed between its knots too, goes beyond the largest angle.
+    /// The gait exceeds the largest angle, at or between its knots.
     AngleLimit {
-        /// Which joint.
+        /// Joint of the angle.
         joint: Joint,
-        /// The knot before the place.
+        /// Index of the knot before the position.
         knot: u16,
         /// Angle there, 1e-4 rad (saturated).
         angle: i32,
-        /// The limit, 1e-4 rad.
+        /// Limit, 1e-4 rad.
         limit: i32,
     },
-    /// The gait asks for more speed than the servos are allowed at this period.
+    /// The gait exceeds the servos' rate limit at this period.
     RateLimit {
-        /// Which joint.
+        /// Joint of the rate.
         joint: Joint,
-        /// The knot before the place.
+        /// Index of the knot before the position.
         knot: u16,
-        /// Shortest period that is allowed, µs.
+        /// Shortest allowed period, µs.
         min_period_us: u32,
     },
-    /// The table does not come back to its first knot: it is no cycle.
+    /// The table does not return to its first knot, so it is no cycle.
     NotClosed {
-        /// Which joint.
+        /// Joint of the step.
         joint: Joint,
         /// Step from the last knot to the first, 1e-4 rad.
         step: i32,
@@ -97,56 +97,55 @@ pub enum Refusal {
     },
     /// The side links come too close to each other.
     LinksCross {
-        /// Where.
+        /// Position in the motion.
         place: CrossingPlace,
-        /// φ₁ there, 1e-4 rad.
+        /// φ₁ at the position, 1e-4 rad.
         phi1: i16,
-        /// φ₂ there, 1e-4 rad.
+        /// φ₂ at the position, 1e-4 rad.
         phi2: i16,
     },
-    /// A detached play, with what follows it, would go on for more than an hour, or without end.
+    /// A detached play, with its follower, would last for more than an hour, or endlessly.
     DetachedTooLong,
-    /// A committed table still waits for its cycle boundary.
+    /// A committed table still waits for the end of a cycle.
     SwapPending,
-    /// The numbers of the request are no lengths, drags, limits or pulses, or loosen the firmware's limits.
+    /// A value is invalid for a length, drag, limit or pulse, or exceeds the firmware's limits.
     BadValue {
-        /// Index of the offending field, counted from 0 in the order of its structure.
+        /// Index of the invalid field, counted from 0 in the order of its structure.
         field: u8,
     },
-    /// Ramping to neutral at these limits takes longer than 1 s.
+    /// A ramp to neutral at these limits takes longer than 1 s.
     SlowToNeutral {
         /// Duration, ms.
         needs_ms: u32,
     },
-    /// The robot is busy with an earlier request that is not answered yet, or a stop cut its check of a table short: ask
-    /// again.
+    /// The robot is busy with an earlier unanswered request, or a stop cancelled the check of a table: repeat the request.
     Busy,
-    /// The robot has a key, and the frame is not signed. A stop needs no signature.
+    /// The robot has a key, and the frame is unsigned. A stop needs no signature.
     KeyNeeded,
-    /// The frame is signed, but not with the robot's key for this session.
+    /// The frame is signed with another key, or for another session.
     WrongKey,
-    /// Only with somebody at the robot: a setting that lets the servos do more, a first key, the boot loader.
+    /// The request requires presence: a setting that gives the servos more freedom, a first key, the boot loader.
     NeedsPresence,
-    /// No fresh keep-alive was heard just now: this came late, or the link was only just opened. Ask again.
+    /// No keep-alive was fresh: the request was late, or the link has just been opened. Repeat the request.
     NotFresh,
-    /// The table does not start where the one that it is to follow does.
+    /// The table does not start at the first knot of the table that it is to follow.
     NotJoined {
-        /// Which joint.
+        /// Joint of the step.
         joint: Joint,
-        /// From the playing table's first knot to this one's, 1e-4 rad.
+        /// Step from the playing table's first knot to this one's, 1e-4 rad.
         step: i32,
     },
     /// The table is not the one that the host checked.
     OtherTable {
-        /// CRC-32C of the robot's.
+        /// CRC-32C of the robot's table.
         held: u32,
     },
     /// The settings are not those that the host checked.
     OtherSettings {
-        /// Hash of the robot's.
+        /// Hash of the robot's settings.
         held: u32,
     },
-    /// Other e-stops came than the ones to be cleared.
+    /// The count of e-stops differs from the one to be cleared.
     EStopCount {
         /// E-stops since the start.
         count: u32,
@@ -154,7 +153,7 @@ pub enum Refusal {
 }
 
 impl Refusal {
-    /// A number for each reason, fixed for ever: its place in this list.
+    /// Permanent number of each reason: its position in this list.
     pub fn number(&self) -> u8 {
         match self {
             Self::StaleSession => 0,
@@ -194,17 +193,17 @@ impl Refusal {
     }
 }
 
-/// Place at which the side links come too close.
+/// Position at which the side links come too close.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum CrossingPlace {
     /// In the gait, after this knot.
     Gait(u16),
-    /// On the way to the gait's first knot, through neutral too.
+    /// On the ramp to the gait's first knot, also through neutral.
     Ramp,
 }
 
 impl core::fmt::Display for Refusal {
-    #[allow(clippy::too_many_lines)] // one sentence a reason
+    #[allow(clippy::too_many_lines)] // one sentence per reason
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let rad = |units: i32| f64::from(units) * 1e-4;
         match *self {

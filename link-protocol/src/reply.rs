@@ -8,52 +8,52 @@ use heapless::String;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
-/// The answer to a [`crate::Request`], under the same sequence number.
+/// Reply to a [`crate::Request`], with the same sequence number.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
 #[allow(clippy::large_enum_variant)] // no heap to box it
 pub enum Reply {
-    /// Done.
+    /// The request was executed.
     Done,
-    /// Not done, and why. Nothing changed.
+    /// The request was refused, with its reason. Nothing changed.
     Refused(Refusal),
-    /// Still at it (checking a table takes some seconds while pulses are on): this is no end. Keep waiting, or ask again with the same
-    /// number; the last word comes under that number too.
+    /// Interim reply: the robot is still working (checking a table takes some seconds while pulses are on). Keep waiting, or
+    /// repeat the request with the same number; the final reply has that number too.
     Working,
-    /// Answer to [`crate::Request::Status`].
+    /// Reply to [`crate::Request::Status`].
     Status(Status),
-    /// Answer to [`crate::Request::Counters`].
+    /// Reply to [`crate::Request::Counters`].
     Counters(Counters),
-    /// Answer to [`crate::Request::Configuration`].
+    /// Reply to [`crate::Request::Configuration`].
     Configuration(Configuration),
-    /// Answer to [`crate::Request::Servo`].
+    /// Reply to [`crate::Request::Servo`].
     Servo(ServoSettings),
-    /// Answer to [`crate::Request::Begin`] and [`crate::Request::Chunk`].
+    /// Reply to [`crate::Request::Begin`] and [`crate::Request::Chunk`].
     Wanted {
         /// Number of the upload: the sequence number of its Begin.
         upload: u16,
-        /// The next offset the robot wants; the length of the table once all has come.
+        /// Next expected offset; the length of the table if all bytes have arrived.
         offset: u16,
     },
-    /// Answer to [`crate::Request::CrashMessage`]; empty where there is none.
+    /// Reply to [`crate::Request::CrashMessage`]; empty if there is no message.
     CrashMessage(String<96>),
-    /// Answer to [`crate::Request::Table`] and, once the table has passed every check, to [`crate::Request::Commit`].
+    /// Reply to [`crate::Request::Table`] and, after the table has passed every check, to [`crate::Request::Commit`].
     Table(Option<TableInfo>),
-    /// Answer to [`crate::Request::Bench`].
+    /// Reply to [`crate::Request::Bench`].
     Bench(BenchStatus),
-    /// Answer to [`crate::Request::PulseRange`].
+    /// Reply to [`crate::Request::PulseRange`].
     PulseRange(PulseRange),
 }
 
 /// Presence, short starts and the configuration as built.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
 pub struct BenchStatus {
-    /// Seconds for which the bench window is still open; 0: it is closed.
+    /// Remaining time of the bench window, s; 0 if it is closed.
     pub window_s: u16,
-    /// This session came over the USB cable, which is presence for as long as it lasts.
+    /// The session uses the USB cable, which counts as presence.
     pub usb: bool,
-    /// Starts in a row that each followed a run of under 60 s, this one included; 0 once this run has lasted for 60 s.
+    /// Number of consecutive starts after runs of under 60 s, including this one; 0 after this run has lasted 60 s.
     pub short_starts: u8,
-    /// The configuration as built: what presence is measured by.
+    /// Configuration as built: the reference for requests that require presence.
     pub built: Configuration,
 }
 
@@ -64,25 +64,25 @@ pub struct Status {
     pub robot_us: u64,
     /// State of the brain.
     pub state: StateName,
-    /// Why it last stopped.
+    /// Cause of the last stop.
     pub cause: StopCause,
-    /// What else holds.
+    /// Further facts, as bits.
     pub flags: Flags,
-    /// Cycles done of the last play.
+    /// Finished cycles of the last play.
     pub cycle: u32,
-    /// Cycles requested; 0 is without end.
+    /// Requested cycles; 0 is endless.
     pub cycles: u32,
     /// Duration of a cycle, µs; 0 before the first play.
     pub period_us: u32,
-    /// Fraction of the cycle done, in 2⁻¹⁶.
+    /// Finished fraction of the cycle, in 2⁻¹⁶.
     pub phase: u16,
     /// Commanded angles φ₁, φ₂ in 1e-4 rad.
     pub setpoint: [i16; 2],
-    /// Battery, mV; `None`: not measured.
+    /// Battery voltage, mV; `None` if it is not measured.
     pub battery_mv: Option<u16>,
-    /// The active table.
+    /// Active table.
     pub table: Option<TableInfo>,
-    /// Bytes held of the upload that is open; `None`: no upload is open.
+    /// Received bytes of the open upload; `None` if no upload is open.
     pub upload: Option<u16>,
     /// [`crate::settings_crc32`] of the settings in force.
     pub settings_crc32: u32,
@@ -91,7 +91,7 @@ pub struct Status {
 }
 
 impl Status {
-    /// Table and settings that the robot holds, for a play of them; without a table its checksum is 0.
+    /// Table and settings that the robot holds, to be named in a play. Without a table its checksum is 0.
     pub fn held(&self) -> Checked {
         Checked {
             table_crc32: self.table.map_or(0, |table| table.crc32),
@@ -100,27 +100,27 @@ impl Status {
     }
 }
 
-/// Names the active table by its evidence.
+/// Identity of the active table.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
 pub struct TableInfo {
     /// Number of knots.
     pub knots: u16,
     /// CRC-32C of its bytes.
     pub crc32: u32,
-    /// Kept over a power cut already.
+    /// The table is stored in flash.
     pub stored: bool,
-    /// Shortest period the present limits allow, µs.
+    /// Shortest period within the present limits, µs.
     pub min_period_us: u32,
 }
 
 /// Counts of frames and requests since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Counters {
-    /// The frame decoder's.
+    /// Counts of the frame decoder.
     pub frames: DecodeCounters,
     /// Requests that acted.
     pub acted: u32,
-    /// Repeats that were answered by the stored reply.
+    /// Repeats that got the stored reply.
     pub replayed: u32,
     /// Requests older than the last that acted.
     pub superseded: u32,
@@ -128,10 +128,10 @@ pub struct Counters {
     pub stale: u32,
     /// Requests that were refused.
     pub refused: u32,
-    /// Frames that found no room on their way out.
+    /// Frames dropped because the transmit buffer was full.
     pub dropped: u32,
-    /// Ticks that came more than one and a half periods after the one before.
+    /// Ticks that came more than one and a half periods after the previous one.
     pub late_ticks: u32,
-    /// Ticks in which the last check before the servos had to cut a pulse.
+    /// Ticks in which the clamp changed a pulse.
     pub clamped: u32,
 }

@@ -5,132 +5,133 @@ use heapless::Vec;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
-/// A request; its frame's sequence number ties the [`crate::Reply`] to it. All but [`Request::Chunk`] act in
-/// increasing order of sequence number (modulo 2¹⁶, half range), each at most once; [`Request::Stop`] and
-/// [`Request::EStop`] act always.
+/// Request of a host; the sequence number of its frame matches the [`crate::Reply`] to it. All except [`Request::Chunk`] act in
+/// increasing order of sequence number (modulo 2¹⁶, half range), each at most once. [`Request::Stop`] and [`Request::EStop`]
+/// always act.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
 #[allow(clippy::large_enum_variant)] // a chunk is a message like others, and there is no heap to box it
 pub enum Request {
-    /// What the robot is doing. Answered by [`crate::Reply::Status`].
+    /// Reads the status. Reply: [`crate::Reply::Status`].
     Status,
-    /// What was received, refused and dropped so far. Answered by [`crate::Reply::Counters`].
+    /// Reads the counts of received, refused and dropped frames. Reply: [`crate::Reply::Counters`].
     Counters,
-    /// The configuration in force. Answered by [`crate::Reply::Configuration`].
+    /// Reads the configuration in force. Reply: [`crate::Reply::Configuration`].
     Configuration,
-    /// Sets the configuration. Lengths more than a tenth from those as built, and limits beyond those as built, need presence.
+    /// Sets the configuration. Lengths more than a tenth from those as built, and limits beyond those as built, require
+    /// presence.
     Configure(Configuration),
-    /// The settings of a servo. Answered by [`crate::Reply::Servo`].
+    /// Reads the settings of a servo. Reply: [`crate::Reply::Servo`].
     Servo(Joint),
-    /// Sets the map of a servo. `reversed`, and a map that moves a joint by more than 1° from where it was last set with
-    /// presence, need presence.
+    /// Sets the map of a servo. A change of `reversed`, and a map that moves a joint by more than 1° from where it was last set
+    /// with presence, require presence.
     SetServo {
-        /// Which joint.
+        /// Joint of the servo.
         joint: Joint,
-        /// Its map.
+        /// New map.
         settings: ServoSettings,
     },
-    /// Sets a servo's trim: angle in units of 1e-4 rad added to every set-point. Not while moving; saved when Stopped. Beyond
-    /// 1° from where the joint was last set with presence it needs presence.
+    /// Sets a servo's trim, an angle in units of 1e-4 rad that is added to every set-point. Refused during a motion; saved when
+    /// Stopped. More than 1° from where the joint was last set with presence requires presence.
     Trim {
-        /// Which joint.
+        /// Joint of the servo.
         joint: Joint,
-        /// The whole trim, not a step, 1e-4 rad.
+        /// Total trim (not a step), 1e-4 rad.
         trim: i16,
     },
-    /// Opens an upload, or resumes the one of the same length and checksum. Answered by [`crate::Reply::Wanted`].
+    /// Opens an upload, or resumes the one of the same length and checksum. Reply: [`crate::Reply::Wanted`].
     Begin(Begin),
-    /// A piece of the table, acting whatever the order. Answered by [`crate::Reply::Wanted`].
+    /// Chunk of the table, accepted in any order of sequence numbers. Reply: [`crate::Reply::Wanted`].
     Chunk(Chunk),
-    /// Checks the uploaded table and makes it the active one. The upload's number is that of its [`Request::Begin`].
+    /// Checks the uploaded table and makes it active. The upload's number is that of its [`Request::Begin`].
     Commit {
         /// Sequence number of the upload's [`Request::Begin`].
         upload: u16,
     },
-    /// Turns pulses on at the last commanded set-point (after a reset: neutral); the servo may jump to it. Clears no latch.
+    /// Switches pulses on at the last commanded set-point (after a reset: neutral); the servo may jump to it. Clears no latch.
     Arm,
     /// Plays the active table, after a soft start.
     Play(Play),
-    /// Holds the pose. Detached: holds it without a link too, for at most 60 s in all, then stops.
+    /// Pauses the play at its pose. Detached: also without a link, for at most 60 s in total; then the robot stops.
     Pause {
-        /// Hold without the link.
+        /// Continue to hold without a link.
         detached: bool,
     },
-    /// Goes on from where [`Request::Pause`] held.
+    /// Resumes a play after [`Request::Pause`].
     Resume,
-    /// Ramps to neutral, then drops the pulses. Acts in every state, whatever session and sequence number, in frames of any
-    /// version.
+    /// Ramps to neutral, then switches the pulses off. Acts in every state, for any session and sequence number, in frames of
+    /// any version.
     Stop,
-    /// Drops the pulses within one tick, latched. Acts as [`Request::Stop`] does.
+    /// Switches the pulses off within one tick, latched. Acts under the same conditions as [`Request::Stop`].
     EStop,
-    /// Clears the latch of three resets in 60 s, or of three short starts, once the robot has been up for 60 s.
+    /// Clears the lock after three resets in 60 s, or three short starts, once the robot has been up for 60 s.
     ClearResets,
-    /// The message of the crash before the last start. Answered by [`crate::Reply::CrashMessage`].
+    /// Reads the message of the crash before the last start. Reply: [`crate::Reply::CrashMessage`].
     CrashMessage,
-    /// Names the table that is active. Answered by [`crate::Reply::Table`].
+    /// Reads the identity of the active table. Reply: [`crate::Reply::Table`].
     Table,
-    /// Sets, changes or removes the shared key, and closes the session: greet again, with the new key. A robot with a key
-    /// takes it only signed with that key; the first key needs presence. The new key crosses the wire in the clear: send it
-    /// over a cable.
+    /// Sets, changes or removes the shared key and closes the session; greet again, with the new key. A robot with a key
+    /// accepts it only if it is signed with that key; the first key requires presence. The new key crosses the wire
+    /// unencrypted, so use a cable.
     SetKey(Option<Key>),
-    /// Presence, short starts and the configuration as built. Answered by [`crate::Reply::Bench`].
+    /// Reads presence, short starts and the configuration as built. Reply: [`crate::Reply::Bench`].
     Bench,
-    /// The pulses that a servo's end stops allow. Answered by [`crate::Reply::PulseRange`].
+    /// Reads the pulse range of a servo's end stops. Reply: [`crate::Reply::PulseRange`].
     PulseRange(Joint),
-    /// Sets them. A range that is wider at either end than the one in force needs presence.
+    /// Sets the pulse range of a servo. A range that is wider at either end than the one in force requires presence.
     SetPulseRange {
-        /// Which joint.
+        /// Joint of the servo.
         joint: Joint,
-        /// Its range.
+        /// New range.
         range: PulseRange,
     },
     /// Clears a latched e-stop to Stopped, without arming.
     ClearEStop {
-        /// [`crate::Status::estops`] as the host last read it: an e-stop that came since is not cleared.
+        /// [`crate::Status::estops`] as last read by the host; later e-stops are not cleared.
         count: u32,
     },
-    /// Leaves the firmware for the chip's boot loader, which takes a new one over USB. The answer comes before.
+    /// Enters the chip's boot loader, which accepts new firmware over USB. The reply is sent first.
     EnterBootLoader,
-    /// Checks an upload as [`Request::Commit`] does, and plays it once the last cycle of the play under way is done (of a play
-    /// without end: the present one), without a pause. Both tables start at the same knot. Answered by
-    /// [`crate::Reply::Table`] when it waits.
+    /// Checks an upload as [`Request::Commit`] does, and plays it without a pause after the last cycle of the present play (if
+    /// that is endless: after the present cycle). Both tables start at the same knot. Reply: [`crate::Reply::Table`] once it is
+    /// scheduled.
     Follow(Follow),
 }
 
 impl Request {
-    /// Ends motion: acts in any session and under any number.
+    /// Returns true for a request that ends motion and always acts.
     pub fn is_stop(&self) -> bool {
         self.class(|| true) == RequestClass::Stop
     }
 
-    /// Turns pulses on, or changes the motion of a powered robot.
+    /// Returns true for a request that switches pulses on or changes the motion of a powered robot.
     pub fn is_powering(&self) -> bool {
         self.class(|| true) == RequestClass::Powering
     }
 }
 
-/// Opens an upload.
+/// Announcement of an upload.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Begin {
-    /// Which gait: 0 is the one there is.
+    /// Slot of the gait; only 0 exists.
     pub slot: u8,
-    /// Bytes of the table: four for each knot.
+    /// Length of the table, bytes: four per knot.
     pub len: u16,
     /// CRC-32C of the table's bytes.
     pub crc32: u32,
 }
 
-/// A piece of a table. Taken where it starts at or before the next wanted offset, whatever came before.
+/// Chunk of a table. Accepted if it starts at or before the next expected offset.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Chunk {
-    /// Sequence number of the upload's [`Request::Begin`]: a late chunk of an earlier upload is told apart by it.
+    /// Sequence number of the upload's [`Request::Begin`]; distinguishes late chunks of an earlier upload.
     pub upload: u16,
-    /// Where the piece starts, bytes.
+    /// Offset of the chunk, bytes.
     pub offset: u16,
-    /// The piece. Frames that carry a signature leave room for [`crate::MAX_SIGNED_CHUNK`] bytes.
+    /// Bytes of the chunk; at most [`crate::MAX_SIGNED_CHUNK`] in a signed frame.
     pub data: Vec<u8, MAX_CHUNK>,
 }
 
-/// Table and settings for which the host has checked a play. A robot that holds others refuses it.
+/// Table and settings for which the host has checked a play. The robot refuses the play if it holds others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Checked {
     /// CRC-32C of the table's bytes, as [`Begin::crc32`].
@@ -139,21 +140,21 @@ pub struct Checked {
     pub settings_crc32: u32,
 }
 
-/// Plays the active table.
+/// Play of the active table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Play {
     /// Number of cycles; 0 plays until stopped.
     pub cycles: u32,
     /// Duration of a cycle, µs.
     pub period_us: u32,
-    /// Plays on to its end when the link falls silent; needs a number of cycles, and at most [`crate::MAX_DETACHED_US`].
+    /// Continues to the end without a link; requires a finite number of cycles, and at most [`crate::MAX_DETACHED_US`].
     pub detached: bool,
     /// Table and settings that the host checked.
     pub checked: Checked,
 }
 
-/// Successor of the play under way; detached if that play is. The two together then last at most
-/// [`crate::MAX_DETACHED_US`] from now.
+/// Play that follows the present one, detached if that one is. Both together then last at most [`crate::MAX_DETACHED_US`] from
+/// now.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Follow {
     /// Sequence number of the upload's [`Request::Begin`].

@@ -1,9 +1,9 @@
-//! Who may drive: frames signed with a shared key (the scheme of `MAVLink` 2: a truncated keyed tag over header, body and a counter
-//! that only grows). The tag is `SipHash-2-4`, a keyed hash made for short messages: its key has 128 bits and its tag
-//! just the 64 that a frame has room for, and it is small and quick on a chip without a multiplier for 64 bits.
+//! Authentication: frames signed with a shared key (the scheme of `MAVLink` 2: a truncated keyed tag over header, body and a
+//! monotonic counter). The tag is `SipHash-2-4`, a keyed hash for short messages. Its key has 128 bits and its tag the 64 bits
+//! that fit a frame, and it is small and fast on a chip without a 64-bit multiplier.
 //!
-//! The tag also covers what the greeting agreed on: the robot's boot nonce, the session's number and the host's nonce. So a
-//! frame recorded in another session, or before a restart, verifies in none that comes after.
+//! The tag also covers the parameters of the greeting: the robot's boot nonce, the session's number and the host's nonce. So a
+//! frame recorded in another session, or before a restart, does not verify in a later one.
 
 use crate::frame::{Kind, header_bytes};
 use crate::{EncodeError, Header, KIND_SIGNED, Message, Signature, encode_body};
@@ -12,12 +12,12 @@ use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 use siphasher::sip::SipHasher24;
 
-/// A shared key. It is never shown.
+/// Shared key. Debug output hides it.
 #[derive(Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Key(pub [u8; Key::LEN]);
 
 impl Key {
-    /// Bytes of a key.
+    /// Length of a key, bytes.
     pub const LEN: usize = 16;
 }
 
@@ -27,18 +27,18 @@ impl core::fmt::Debug for Key {
     }
 }
 
-/// What a session is bound to: nothing signed in another one counts in it.
+/// Parameters to which a session's signatures are bound: they are invalid in any other session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Binding {
-    /// Of [`crate::HelloReply`].
+    /// Boot nonce of [`crate::HelloReply`].
     pub boot_nonce: u32,
     /// Number of the session.
     pub session: u16,
-    /// Of [`crate::Hello`].
+    /// Nonce of [`crate::Hello`].
     pub host_nonce: u32,
 }
 
-/// A key bound to a session: signs and verifies its frames.
+/// Key bound to a session: signs and verifies its frames.
 ///
 /// ```
 /// use link_protocol::{Binding, Decoder, Header, Key, MAX_ENCODED, Message, Request, Seal, encode_signed};
@@ -68,7 +68,7 @@ impl core::fmt::Debug for Seal {
 }
 
 impl Seal {
-    /// The key, bound to a session.
+    /// Binds the key to a session.
     pub fn new(key: &Key, binding: Binding) -> Self {
         let mut keyed = SipHasher24::new_with_key(&key.0);
         keyed.write(&binding.boot_nonce.to_le_bytes());
@@ -77,7 +77,7 @@ impl Seal {
         Self { keyed }
     }
 
-    /// The signature of a frame. `counter` (48 bits) must be above that of every frame signed before in this session.
+    /// Signature of a frame. `counter` (48 bits) must exceed that of every frame signed before in this session.
     pub fn sign(&self, header: Header, kind: Kind, body: &[u8], counter: u64) -> Signature {
         let mut hasher = self.keyed;
         hasher.write(&header_bytes(header, kind as u8 | KIND_SIGNED));
@@ -89,20 +89,20 @@ impl Seal {
         }
     }
 
-    /// Whether a frame was signed with this key for this session. `signed` are its bytes before the tag:
+    /// Returns true if a frame was signed with this key for this session. `signed` are its bytes before the tag:
     /// [`crate::Decoder::signed_bytes`].
     pub fn verifies(&self, signed: &[u8], signature: &Signature) -> bool {
         let mut hasher = self.keyed;
         hasher.write(signed);
-        // One comparison of 64 bits: how long it takes tells nothing.
+        // One comparison of 64 bits, in constant time.
         hasher.finish() ^ u64::from_le_bytes(signature.tag) == 0
     }
 }
 
-/// [`crate::encode`], signed.
+/// Encodes like [`crate::encode`], with a signature.
 ///
 /// # Errors
-/// `out` is shorter than [`crate::MAX_ENCODED`], or the message leaves no room for the signature.
+/// `out` is shorter than [`crate::MAX_ENCODED`], or message and signature exceed a frame.
 pub fn encode_signed(
     header: Header,
     message: &Message,

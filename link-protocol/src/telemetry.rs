@@ -1,84 +1,83 @@
-//! Telemetry, keep-alives and the clock.
+//! Telemetry, keep-alives and clock messages.
 
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
-/// State of the brain; `gait-player` has the glossary and the diagram.
+/// State of the brain; `gait-player` has the glossary and the state diagram.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum StateName {
     /// Pulses off.
     Stopped,
     /// Pulses off, latched until [`crate::Request::ClearEStop`].
     EStopped,
-    /// Pulses on, standing still.
+    /// Pulses on, holding a pose.
     Holding,
-    /// On the ramp to the first knot.
+    /// Ramp to the first knot.
     Starting,
     /// Playing the table.
     Playing,
     /// Holding a pose within a play.
     Paused,
-    /// On the ramp to neutral.
+    /// Ramp to neutral.
     Stopping,
     /// At neutral, pulses on for the last half second.
     Settling,
 }
 
-/// Cause of the last stop; the later in this list the more severe.
+/// Cause of the last stop, in increasing order of severity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, Schema)]
 pub enum StopCause {
-    /// It has not moved since its start.
+    /// The robot has not moved since its start.
     Boot,
     /// The last cycle ended.
     Finished,
-    /// An operator's Stop.
+    /// Stop of an operator.
     Requested,
-    /// A detached pause reached its 60 s.
+    /// A detached pause reached 60 s.
     PauseExpired,
-    /// The link fell silent.
+    /// The link became silent.
     LinkLost,
     /// The battery was low for 1 s.
     BatteryLow,
-    /// An operator's e-stop.
+    /// E-stop of an operator.
     EStop,
 }
 
-/// Yes-or-no facts, one bit each.
+/// Boolean facts, one bit each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Flags(pub u16);
 
 impl Flags {
-    /// The battery is below its limit, or was until less than 5 s ago.
+    /// The battery is below its limit, or was within the last 5 s.
     pub const BATTERY_LOW: Self = Self(1);
     /// Three resets in 60 s: arming is refused.
     pub const RESET_LOOP: Self = Self(2);
     /// No valid frame of the open session within the lease.
     pub const LINK_SILENT: Self = Self(4);
-    /// The play, or the pause, goes on without a link.
+    /// The play or pause continues without a link.
     pub const DETACHED: Self = Self(8);
-    /// A committed table waits for its cycle boundary.
+    /// A committed table waits for the end of a cycle.
     pub const SWAP_PENDING: Self = Self(16);
     /// Settings or table are not stored yet.
     pub const UNSAVED: Self = Self(32);
-    /// The cycle began in this tick or the ones just before: the LED flashes.
+    /// The cycle began in this tick or shortly before: the LED flashes.
     pub const CYCLE_FLASH: Self = Self(64);
     /// The last storage operation failed.
     pub const STORAGE_FAILED: Self = Self(128);
-    /// A shared key is set: from the next session on only signed frames act, but for stops.
+    /// A shared key is set: from the next session on only signed frames act, except for stops.
     pub const KEY_SET: Self = Self(256);
-    /// Somebody is at the robot: its bench window is open, or the session came over the USB cable. What needs presence may
-    /// be asked for.
+    /// A person is at the robot: the bench window is open, or the session uses the USB cable. Requests that require presence
+    /// are allowed.
     pub const PRESENT: Self = Self(512);
-    /// Arming is refused because of starts that followed each other too quickly, as in a servo's brown-out; with
-    /// [`Flags::RESET_LOOP`].
+    /// Arming is locked because of repeated short starts, as in a servo's brown-out; set together with [`Flags::RESET_LOOP`].
     pub const SHORT_STARTS: Self = Self(1024);
 
-    /// All bits of `other` are set.
+    /// Returns true if all bits of `other` are set.
     pub fn contains(self, other: Self) -> bool {
         self.0 & other.0 == other.0
     }
 
-    /// Sets the bits of `other` where `condition` holds.
+    /// Sets the bits of `other` if `condition` is true.
     #[must_use]
     pub fn with(self, other: Self, condition: bool) -> Self {
         if condition {
@@ -89,67 +88,67 @@ impl Flags {
     }
 }
 
-/// Sent by the robot about 25 times a second while a session is open, and only where there is room.
+/// Telemetry of the robot, about 25 times a second while a session is open, if the link has capacity.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
 pub struct Telemetry {
-    /// The robot's clock at the tick this tells of, µs since its start.
+    /// The robot's clock at the reported tick, µs since its start.
     pub robot_us: u64,
     /// State of the brain.
     pub state: StateName,
-    /// Why it stops or last stopped.
+    /// Cause of the present or last stop.
     pub cause: StopCause,
-    /// What else holds.
+    /// Further facts, as bits.
     pub flags: Flags,
-    /// Cycles done.
+    /// Finished cycles.
     pub cycle: u32,
-    /// Cycles asked for; 0 is without end.
+    /// Requested cycles; 0 is endless.
     pub cycles: u32,
-    /// Fraction of the cycle done, in 2⁻¹⁶.
+    /// Finished fraction of the cycle, in 2⁻¹⁶.
     pub phase: u16,
     /// Commanded angles φ₁, φ₂ in 1e-4 rad.
     pub setpoint: [i16; 2],
-    /// Pulses, ns; 0: off.
+    /// Pulses, ns; 0 if they are off.
     pub pulse_ns: [u32; 2],
-    /// Battery, mV; `None`: not measured.
+    /// Battery voltage, mV; `None` if it is not measured.
     pub battery_mv: Option<u16>,
-    /// Where the model says the robot is.
+    /// Pose according to the model.
     pub pose: Pose,
-    /// Whole frames received, modulo 2¹⁶.
+    /// Complete frames received, modulo 2¹⁶.
     pub frames_ok: u16,
-    /// Broken frames received, modulo 2¹⁶.
+    /// Corrupt frames received, modulo 2¹⁶.
     pub frames_bad: u16,
 }
 
-/// Pose of the middle link as the model predicts it from the commanded angles, in the frame of the middle link at the
-/// start of the play's first cycle.
+/// Pose of the middle link, predicted by the model from the commanded angles, in the frame of the middle link at the start of
+/// the play's first cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, Schema)]
 pub struct Pose {
-    /// Along the first heading, m.
+    /// Displacement along the initial heading, m.
     pub x: f32,
-    /// Across it, m.
+    /// Displacement across it, m.
     pub y: f32,
     /// Heading, rad.
     pub theta: f32,
 }
 
-/// Host to robot, outside the order of requests: the keep-alive, and the question for the time. It renews the lease if it is
-/// fresh: if the host has heard the robot at most a second ago, and later than by any keep-alive before. So neither a
-/// recorded keep-alive nor those that a dead host left in a buffer renew the lease.
+/// Keep-alive, host to robot, outside the order of requests; it also requests the robot's time. It renews the lease if it is
+/// fresh: the host received a frame of the robot at most a second ago, later than at any keep-alive before. So neither recorded
+/// keep-alives nor those in a dead host's buffer renew the lease.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Heartbeat {
-    /// The host's clock when it sent this, µs.
+    /// Host time of sending, µs.
     pub host_us: u64,
-    /// The latest time of the robot's clock that the host has heard in this session, µs; 0 where it has heard none yet.
+    /// Latest robot time that the host has received in this session, µs; 0 before the first.
     pub heard_us: u64,
 }
 
-/// Robot to host: the answer to [`Heartbeat`], under its sequence number.
+/// Reply to [`Heartbeat`], robot to host, with its sequence number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Pong {
-    /// As in the [`Heartbeat`].
+    /// Host time of the [`Heartbeat`], µs.
     pub host_us: u64,
-    /// The robot's clock when the keep-alive was read, µs.
+    /// Robot time at which the keep-alive was read, µs.
     pub received_us: u64,
-    /// The robot's clock when this was handed to the transmitter, µs.
+    /// Robot time at which the reply was passed to the transmitter, µs.
     pub sent_us: u64,
 }

@@ -1,12 +1,12 @@
-//! The authority table: that the documentation shows it as the code has it, and where settings begin to need presence.
-#[allow(dead_code)] // requests alone
+//! Authority table: agreement of documentation and code, and the thresholds above which settings require presence.
+#[allow(dead_code)] // only the requests are used
 use crate::samples;
 
 use link_protocol::*;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-/// Rows of the table: class, its requests, its needs.
+/// Rows of the table: class, requests, conditions.
 fn table() -> String {
     let mut text = String::from(
         "| class | requests | signed, if a key is set | fresh keep-alive | presence | state | wear budget |\n|---|---|---|---|---|---|---|\n",
@@ -76,7 +76,7 @@ fn the_documentation_shows_the_authority_table() {
     }
 }
 
-/// The numbers of requests that every version knows.
+/// Requests that every version supports.
 #[test]
 fn stops_need_nothing() {
     for request in [Request::Stop, Request::EStop] {
@@ -111,7 +111,7 @@ fn held() -> SettingsHeld {
     }
 }
 
-/// 1° is 174.5 units of trim, and 0.637 µs of this servo.
+/// 1° is 174.5 units of trim, or 0.637 µs of this servo.
 #[test]
 fn centre_slope_and_trim_add_up() {
     let held = held();
@@ -133,7 +133,7 @@ fn centre_slope_and_trim_add_up() {
     assert!(wide(0, f32::NAN, 0));
 }
 
-/// Steps of half a degree, each within the limit of the one before, add up to no more than one step.
+/// Steps of half a degree, each within the limit from the previous one, do not accumulate.
 #[test]
 fn small_steps_are_measured_from_the_bench() {
     let mut held = held();
@@ -145,7 +145,7 @@ fn small_steps_are_measured_from_the_bench() {
     assert!(!held.is_widened_by(&trim(174)));
     held.servos[0].trim = 174;
     assert!(held.is_widened_by(&trim(261)));
-    // The setting in force is no change, wherever it lies.
+    // Repeating the present setting is no change, whatever its value.
     held.servos[0].trim = 400;
     assert!(!held.is_widened_by(&trim(400)));
 }
@@ -178,7 +178,7 @@ fn other_directions_wider_ranges_and_first_keys_are_wider() {
     assert!(!held.is_widened_by(&key));
 }
 
-/// Each number of the settings counts.
+/// Each value of the settings affects the hash.
 #[test]
 fn the_hash_of_the_settings_covers_each_of_them() {
     let held = held();

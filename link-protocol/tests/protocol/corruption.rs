@@ -1,4 +1,4 @@
-//! Promises R1 and R2: what the wire breaks is rejected and counted. Seeded; the long runs are `--ignored`.
+//! Promises R1 and R2: corrupted frames are rejected and counted. Seeded; the long runs are `--ignored`.
 use crate::samples;
 
 use link_protocol::{Decoder, MAX_RAW, Message};
@@ -6,7 +6,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::collections::HashSet;
 
-/// Frames the decoder takes out of `bytes`, closed by a zero.
+/// Frames that the decoder accepts from `bytes`, closed by a zero.
 fn accepted(
     decoder: &mut Decoder,
     bytes: &[u8],
@@ -26,7 +26,7 @@ fn short_frames(most: usize) -> Vec<(&'static str, Vec<u8>)> {
     frames.filter(|(_, frame)| frame.len() <= most).collect()
 }
 
-/// Flips every set of up to `left` bits from bit `from` on; returns how many frames were tried.
+/// Flips every set of up to `left` bits from bit `from` on; returns the number of frames.
 fn flip(frame: &mut [u8], from: usize, left: u32, decoder: &mut Decoder, name: &str) -> u64 {
     let mut tried = 0;
     for bit in from..8 * frame.len() {
@@ -76,7 +76,7 @@ fn every_flip_of_three_bits_is_rejected() {
     );
 }
 
-/// Breaks `frame` in one of the ways a wire or a buffer breaks bytes.
+/// Corrupts `frame` in one of the ways of a wire or a buffer.
 fn corrupt(random: &mut ChaCha8Rng, frame: &[u8], other: &[u8], broken: &mut Vec<u8>) {
     broken.clear();
     broken.extend(frame);
@@ -88,7 +88,7 @@ fn corrupt(random: &mut ChaCha8Rng, frame: &[u8], other: &[u8], broken: &mut Vec
             2 if at < broken.len() => drop(broken.remove(at)),
             3 => broken.truncate(at),
             4 => {
-                // The head of one frame runs into the tail of another.
+                // The head of one frame joined to the tail of another.
                 broken.truncate(at);
                 broken.extend(&other[random.random_range(0..other.len())..]);
             }
@@ -100,7 +100,7 @@ fn corrupt(random: &mut ChaCha8Rng, frame: &[u8], other: &[u8], broken: &mut Vec
     }
 }
 
-/// Feeds `frames` broken frames; panics where a message comes out that was not sent.
+/// Decodes `frames` corrupted frames; panics if a message appears that was not sent.
 fn corrupted_streams(seed: u64, frames: u64) -> link_protocol::DecodeCounters {
     let messages = samples::messages();
     let encoded: Vec<_> = messages
@@ -123,7 +123,7 @@ fn corrupted_streams(seed: u64, frames: u64) -> link_protocol::DecodeCounters {
             .split(|&byte| byte == 0)
             .filter(|piece| !piece.is_empty())
             .count() as u64;
-        // A splice may hold a whole frame unharmed: what was sent may come out, nothing else.
+        // A splice may contain an intact frame, so only sent messages may appear.
         let mut sent = broken
             .split(|&byte| byte == 0)
             .filter(|piece| whole.contains(piece))

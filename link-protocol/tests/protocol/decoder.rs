@@ -1,4 +1,4 @@
-//! The decoder on good and bad bytes: every split, every counter, garbage before a frame (promises R2 and R3).
+//! Decoder on valid and invalid bytes: every split, every counter, garbage before a frame (promises R2 and R3).
 use crate::samples;
 
 use link_protocol::*;
@@ -77,7 +77,7 @@ fn kind_and_body_of_the_last_frame_can_be_told() {
     }
     let mut decoder = Decoder::new();
     assert_eq!(decoder.kind_and_body(), None);
-    // A body that is no message is told too, but neither one of no kind nor one too short for its signature.
+    // An invalid body is available too, but not one of an unknown kind or too short for its signature.
     push_all(&mut decoder, &raw_frame(4, 1, &[200]));
     assert_eq!(decoder.kind_and_body(), Some((Kind::Reply, &[200][..])));
     push_all(&mut decoder, &raw_frame(10, 1, &[200]));
@@ -200,11 +200,11 @@ fn every_split_point_decodes_the_same() {
 fn each_fault_has_its_counter() {
     let good = samples::frame(&Message::Request(Request::Stop));
     let mut decoder = Decoder::new();
-    // A flipped bit within the CRC.
+    // A flipped bit in the CRC.
     let mut flipped = good.clone();
     flipped[4] ^= 0x10;
     assert!(push_all(&mut decoder, &flipped).is_empty());
-    // Too short to hold a CRC; too short to hold a header.
+    // Too short for a CRC; too short for a header.
     assert!(push_all(&mut decoder, &[2, 7, 0, 6, 1, 2, 3, 4, 5, 0]).is_empty());
     assert_eq!(
         decoder.counters(),
@@ -213,16 +213,16 @@ fn each_fault_has_its_counter() {
             ..Default::default()
         }
     );
-    // A COBS code that points behind the end.
+    // A COBS code that points past the end.
     assert!(push_all(&mut decoder, &[9, 1, 2, 0]).is_empty());
     assert_eq!(decoder.counters().bad_cobs, 1);
-    // Longer than any frame, then a tail that looks like a frame: both dropped, the next is taken.
+    // Longer than any frame, then a tail that looks like a frame: both are dropped, the next one is accepted.
     let mut long = vec![1; MAX_RAW + 2];
     long.extend(&good);
     assert!(push_all(&mut decoder, &long).is_empty());
     assert_eq!(decoder.counters().overflow, 1);
     assert_eq!(push_all(&mut decoder, &good).len(), 1);
-    // Whole frames that are no message.
+    // Complete frames without a valid message.
     let expect = |decoder: &mut Decoder, frame: &[u8], error: BodyError| {
         let received = push_all(decoder, frame);
         assert_eq!(received.len(), 1);
@@ -289,7 +289,7 @@ fn spare_bits_of_the_frozen_greeting_are_ignored() {
     let (_, reply) = samples::messages().remove(1);
     let mut body = [0; MAX_BODY];
     let body = reply.encode_body(&mut body).unwrap();
-    // Nonce 5, versions 2, key 8, firmware 3 + 8, board and reset reason 2: then the flags.
+    // Nonce 5, versions 2, key 8, firmware 3 + 8, board and reset reason 2; then the flags.
     assert_eq!(body[28], 1);
     body[28] = 0xFF;
     assert_eq!(
@@ -300,7 +300,7 @@ fn spare_bits_of_the_frozen_greeting_are_ignored() {
 
 #[test]
 fn a_signed_frame_too_short_for_its_signature_is_no_message() {
-    // Without the encoder, which cannot make such a frame.
+    // Built by hand, because the encoder cannot produce such a frame.
     let mut raw = vec![1, 1, 0, 2, 0, 6 | KIND_SIGNED, 9, 9, 9];
     raw.extend(crc32c(&raw).to_le_bytes());
     let mut frame = vec![0; MAX_ENCODED];
@@ -338,7 +338,7 @@ fn encoding_needs_room() {
 
 #[test]
 fn refusals_keep_their_numbers() {
-    // The number is the variant's place on the wire too.
+    // The number is also the variant's index on the wire.
     for (name, message) in samples::messages() {
         let Message::Reply(Reply::Refused(refusal)) = message else {
             continue;
@@ -364,21 +364,21 @@ fn flags_are_bits() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 512, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// R3.
+    /// Promise R3.
     #[test]
     fn after_any_garbage_the_next_frame_is_decoded(garbage in prop::collection::vec(any::<u8>(), 0..600), which in 0..60_usize) {
         let messages = samples::messages();
         let message = &messages[which % messages.len()].1;
         let mut decoder = Decoder::new();
         prop_assert!(push_all(&mut decoder, &garbage).is_empty());
-        // The burst start ends the garbage.
+        // The burst start terminates the garbage.
         prop_assert!(decoder.push(0).is_none());
         let received = push_all(&mut decoder, &samples::frame(message));
         prop_assert_eq!(received.len(), 1);
         prop_assert_eq!(received[0].message.as_ref(), Ok(message));
     }
 
-    /// Each run of bytes between zeros ends in exactly one counter.
+    /// Each run of bytes between zeros increments exactly one counter.
     #[test]
     fn everything_is_counted(pieces in prop::collection::vec(prop::collection::vec(1_u8..=255, 1..300), 0..20)) {
         let mut decoder = Decoder::new();

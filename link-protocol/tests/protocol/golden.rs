@@ -1,5 +1,5 @@
-//! Promise R12: the bytes of a version never change, nor those of the messages of every version. If a test here fails, do not
-//! change the file: the wire broke.
+//! Promise R12: the bytes of a version never change, nor those of the messages common to all versions. If a test here fails, do
+//! not change the file: the wire format broke.
 use crate::samples;
 
 use link_protocol::{
@@ -8,9 +8,9 @@ use link_protocol::{
 };
 use std::fmt::Write as _;
 
-/// Version 1.0. Lines are appended with variants; only the last line, the structure of all messages, then changes.
+/// Version 1.0. Lines are appended with variants; then only the last line, the structure of all messages, changes.
 const GOLDEN: &str = include_str!("../golden/v1.txt");
-/// Greetings, stops and their answer, in frames of any version.
+/// Greetings, stops and their replies, in frames of any version.
 const EVERY_VERSION: &str = include_str!("../golden/every-version.txt");
 
 fn hex(bytes: &[u8]) -> String {
@@ -76,13 +76,13 @@ fn the_golden_bytes_decode_to_the_messages() {
     }
 }
 
-/// No build before the first release used this byte: those used 1 and 2.
+/// Builds before the first release used the bytes 1 and 2.
 #[test]
 fn the_version_byte_is_new() {
     assert_eq!(PROTOCOL_CURRENT, 0x10);
 }
 
-/// In frames of every version: the messages that every robot obeys, and every host reads.
+/// Messages that every robot and every host reads, in frames of every version.
 #[test]
 fn greetings_and_stops_are_the_same_in_every_version() {
     let frozen = samples::messages().into_iter().filter(|(name, _)| {
@@ -126,7 +126,7 @@ fn greetings_and_stops_are_the_same_in_every_version() {
     );
 }
 
-/// No other message of another version is read, not even those of the builds before version 1.0.
+/// No other message of another version is accepted, including those of builds before version 1.0.
 #[test]
 fn other_versions_have_no_other_messages() {
     let frozen = |message: &Message| {
@@ -147,7 +147,7 @@ fn other_versions_have_no_other_messages() {
             assert_eq!(read.is_ok(), frozen(&message), "{name}, version {version}");
         }
     }
-    // A byte more is no stop.
+    // With an extra byte it is no stop.
     let longer = Message::decode_body(3, Kind::Request as u8, &[14, 0]);
     assert!(longer.is_err());
     assert!(Kind::from_byte(KIND_SIGNED).is_none());

@@ -1,4 +1,4 @@
-//! Signed frames: what verifies and what does not.
+//! Signed frames: accepted and rejected signatures.
 use crate::samples;
 
 use link_protocol::*;
@@ -27,7 +27,7 @@ fn signed(message: &Message, seal: &Seal, counter: u64) -> Vec<u8> {
     out[..len].to_vec()
 }
 
-/// The vector of the authors of `SipHash`: key 00 … 0f, input 00 … 0e, of which the first ten bytes are the binding here.
+/// Test vector of the authors of `SipHash`: key 00 … 0f, input 00 … 0e, of which the first ten bytes are the binding here.
 #[test]
 fn the_tag_is_siphash_2_4() {
     let key = Key([0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15]);
@@ -88,7 +88,7 @@ fn only_the_same_key_in_the_same_session_verifies() {
     }
 }
 
-/// An adversary can mend the CRC: every bit of header, body, counter and tag counts.
+/// An adversary can correct the CRC, so the tag must cover every bit of header, body, counter and itself.
 #[test]
 fn every_flipped_bit_under_a_mended_crc_is_noticed() {
     let seal = Seal::new(&KEY, BINDING);
@@ -119,7 +119,7 @@ fn every_flipped_bit_under_a_mended_crc_is_noticed() {
 fn a_key_is_not_shown() {
     let shown = format!("{:?}", Request::SetKey(Some(KEY)));
     assert_eq!(shown, "SetKey(Some(Key(not shown)))");
-    // Nor what it has become: a state of the hash is as good as the key.
+    // The derived hash state is hidden too, because it is equivalent to the key.
     let shown = format!("{:?}", Seal::new(&KEY, BINDING));
     assert_eq!(shown, "Seal(not shown)");
 }

@@ -1,4 +1,4 @@
-//! One or more of every message, for golden files and corruption tests. Only appended to.
+//! Samples of every message, for golden files and corruption tests. Only appended to.
 use heapless::{String, Vec};
 use link_protocol::*;
 
@@ -21,7 +21,7 @@ const TABLE: TableInfo = TableInfo {
 };
 
 fn hello() -> Hello {
-    // The schema key itself is fixed by a line of its own in the golden file.
+    // A separate line of the golden file fixes the schema key itself.
     Hello {
         protocol_min: 0x10,
         protocol_current: 0x10,
@@ -220,7 +220,7 @@ pub(crate) fn requests() -> std::vec::Vec<(&'static str, Request)> {
     ]
 }
 
-#[allow(clippy::too_many_lines)] // one entry a reason
+#[allow(clippy::too_many_lines)] // one entry per reason
 fn refusals() -> std::vec::Vec<(&'static str, Refusal)> {
     vec![
         ("refused/stale session", Refusal::StaleSession),
@@ -391,7 +391,7 @@ const CHECKED: Checked = Checked {
     settings_crc32: 0xFEED_F00D,
 };
 
-/// Every message with a name.
+/// Named samples of every message.
 pub(crate) fn messages() -> std::vec::Vec<(&'static str, Message)> {
     let mut all = vec![
         ("hello", Message::Hello(hello())),
@@ -431,7 +431,7 @@ pub(crate) fn messages() -> std::vec::Vec<(&'static str, Message)> {
     all
 }
 
-/// The frame of a message, as the golden files hold it: session 0xBEEF, sequence 300, without the burst start.
+/// Frame of a message as in the golden files: session 0xBEEF, sequence 300, without the burst start.
 pub(crate) fn frame(message: &Message) -> std::vec::Vec<u8> {
     let mut out = [0; MAX_ENCODED];
     let len = encode(Header::new(0xBEEF, 300), message, &mut out).unwrap();
