@@ -1,4 +1,4 @@
-//! What a tick costs on this machine, playing a table of 512 knots; the chip's figure is the emulator's to tell.
+//! Cost of a tick on the host, playing a table of 512 knots. The emulator measures the chip's figure.
 #![allow(missing_docs)]
 #[path = "../tests/player/bench/mod.rs"]
 mod bench;

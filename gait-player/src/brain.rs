@@ -1,4 +1,4 @@
-//! The brain: a pure state machine between a link that lies and servos that obey.
+//! Brain: the robot's state machine. It reads an unreliable link and drives the servos, without I/O of its own (sans-IO).
 //!
 //! ```text
 //!                       arm                   play            ramp done
@@ -18,26 +18,28 @@
 //!
 //! # Glossary
 //!
-//! - **set-point**: the two joint angles commanded in a tick; **pulse**: what the servo map makes of them.
-//! - **tick**: 20 ms, the servo period. Motion counts ticks on a grid, so a tick that comes late or early within 10 ms
-//!   changes no set-point, and nothing drifts.
-//! - **lease**: a link is alive for 460 ms after a fresh keep-alive of the open session; silence stops what is powered, but
-//!   for a detached play of a finite number of cycles (which goes on to its end) and a detached pause (60 s).
-//! - **fresh**: its host had heard the robot at most a second ago, and later than by any keep-alive before. Nothing else feeds
-//!   the lease, and what powers the servos is refused while it is empty: a dead host's bytes do nothing, however many wait.
-//! - **transport**: UART or USB, each with its decoder and its way out. The session is that of the greeting that came last.
-//! - **presence**: somebody is at the robot: the request came over USB, or the **bench window** is open, for two minutes from
-//!   when the jumper closes. A first key, lengths and limits beyond those as built and the boot loader need it.
-//! - **latched**: the stopped states are left by an explicit arm only. A link or a battery that comes back, a reset, a
-//!   request of an earlier session resume nothing.
-//! - **active** and **staging** table: the one that plays, and the one that an upload fills. A commit checks staging and
-//!   swaps: at once while nothing plays, else at the end of the cycle, by a ramp.
-//! - **clamp**: the last check before the servos, the only place where angle, rate and pulse are limited.
+//! - **set-point**: the two joint angles commanded in a tick; **pulse**: the servo map applied to a set-point.
+//! - **tick**: 20 ms, the servo period. Motion counts ticks on a grid. A tick that comes up to 10 ms early or late changes no
+//!   set-point, and nothing drifts.
+//! - **lease**: a link is alive for 460 ms after a fresh keep-alive of the open session. Silence stops a powered robot. Two
+//!   exceptions: a detached play of a finite number of cycles plays to its end, and a detached pause lasts 60 s.
+//! - **fresh**: the host received a frame of the robot at most one second ago, later than at any keep-alive before. Only a
+//!   fresh keep-alive renews the lease. Requests that power the servos are refused if the lease has run out, so buffered bytes
+//!   of a dead host have no effect.
+//! - **transport**: UART or USB, each with its own decoder and outbox. The session belongs to the transport of the last
+//!   greeting.
+//! - **presence**: a person is at the robot. Either the request came over USB, or the **bench window** is open: two minutes
+//!   from when the jumper closes. A first key, lengths and limits beyond those as built, and the boot loader require it.
+//! - **latched**: only an explicit arm leaves a stopped state. A returning link or battery, a reset, or a request of an earlier
+//!   session resumes nothing.
+//! - **active** and **staging** table: the table that plays, and the table that an upload fills. A commit checks the staging
+//!   table and swaps: at once if nothing plays, otherwise at the end of the cycle, by a ramp.
+//! - **clamp**: the last check before the servos, and the only place that limits angle, rate and pulse.
 //!
 //! # Order of severity
 //!
-//! E-stop (at once) > low battery > silent link > end of a detached pause > Stop > end of the last cycle. Where several
-//! hold, the more severe is told as [`link_protocol::StopCause`]; all but e-stop end in the same ramp.
+//! E-stop (at once) > low battery > silent link > end of a detached pause > Stop > end of the last cycle. If several apply, the
+//! most severe is reported as [`link_protocol::StopCause`]. All except e-stop end in the same ramp.
 
 mod actions;
 mod battery;
@@ -78,14 +80,14 @@ use swimmer_model::{Model, Swimmer};
 use tables::Tables;
 use work::Work;
 
-/// The brain. About 7 kB; no heap. A clone goes on by itself from the same state: whoever replays a log tries with it what
-/// may have come when.
+/// State machine of the robot. About 7 kB, without heap. A clone continues independently from the same state, so a log replay
+/// can try several arrival times.
 #[derive(Clone)]
 pub struct Brain {
     identity: Identity,
     boot: Boot,
     buffer: u16,
-    /// The firmware's own limits, and the same tightened by the configuration.
+    /// The firmware's own limits, and those limits tightened by the configuration.
     firmware_limits: Limits,
     limits: Limits,
     /// The configuration as built.
@@ -93,7 +95,7 @@ pub struct Brain {
     settings: Settings,
     model: Model<f32>,
 
-    /// One for each transport.
+    /// One decoder per transport.
     decoders: [Decoder; 2],
     session: Session,
     outboxes: [Outbox; 2],
@@ -110,16 +112,16 @@ pub struct Brain {
     battery: Battery,
     battery_stops: bool,
     resets: Resets,
-    /// E-stops since the start; a latch that a reset left counts as one.
+    /// E-stops since the start. A latch restored after a reset counts as one.
     estops: u32,
-    /// To be kept, the present run included.
+    /// Record of short starts to store, including the present run.
     starts: ShortStarts,
     bench: Bench,
 
-    /// Time of the first tick; the grid's origin.
+    /// Time of the first tick: the origin of the tick grid.
     origin_us: Option<u64>,
     tick: u64,
-    /// What the joints were last commanded, after the clamp.
+    /// Last commanded joint angles, after the clamp.
     commanded: [f32; 2],
     clamp: Clamp,
     odometer: Odometer,
@@ -127,9 +129,9 @@ pub struct Brain {
 }
 
 impl Brain {
-    /// A brain in Stopped (or e-stopped, where a reset found it so). A configuration that the limits do not allow is
-    /// replaced by the paper's robot within them.
-    #[inline] // where it is to lie: the chip's stack has no room for several on their way there
+    /// Returns a brain in Stopped, or in e-stop if a reset preserved the latch. A configuration outside the limits is replaced
+    /// by the paper's robot within them.
+    #[inline] // builds the value in place: the chip's stack cannot hold several copies
     pub fn new(config: BrainConfig) -> Self {
         let BrainConfig {
             identity,
@@ -209,7 +211,7 @@ impl Brain {
         brain
     }
 
-    /// Counts this start to those before it. Too many short ones lock arming, as three resets do.
+    /// Adds this start to the count of short starts. Too many of them lock arming, as three resets do.
     fn count_start(&mut self, before: ShortStarts) {
         self.starts = before.start();
         self.output.starts = self.starts;
@@ -222,7 +224,7 @@ impl Brain {
         }
     }
 
-    /// This run is none of the short ones.
+    /// Resets the count of short starts: this run is not a short one.
     fn clear_starts(&mut self) {
         if self.starts.runs > 0 {
             self.starts = ShortStarts::default();
@@ -230,12 +232,12 @@ impl Brain {
         }
     }
 
-    /// Takes what was stored: settings and the newest whole table, each where it can be read, and the count of short starts,
-    /// to which it writes this one. Call once, before the first tick. What is not valid is as if it were not there, and is told by [`link_protocol::Flags::STORAGE_FAILED`] until
-    /// something is stored again.
+    /// Restores settings, the newest valid table and the count of short starts, and stores the count with this start. Call it
+    /// once, before the first tick. Invalid records count as missing; [`link_protocol::Flags::STORAGE_FAILED`] reports them
+    /// until a record is stored again.
     ///
     /// # Errors
-    /// Something stored could not be read; the brain works without.
+    /// A record could not be read. The brain works without it.
     pub fn load<S: Storage>(&mut self, storage: &mut S) -> Result<(), S::Error> {
         let mut bytes = [0; MAX_SETTINGS];
         let stored = storage.load_settings(&mut bytes);
@@ -257,7 +259,7 @@ impl Brain {
         outcome.and(self.load_starts(storage))
     }
 
-    /// What the RAM kept is newer than what the storage holds; both are to know of this start before it can end.
+    /// Merges the records of RAM and storage. RAM is newer; both must count this start before it can end.
     fn load_starts<S: Storage>(&mut self, storage: &mut S) -> Result<(), S::Error> {
         let mut bytes = [0; ShortStarts::LEN];
         if self.boot.starts.is_none()
@@ -269,9 +271,9 @@ impl Brain {
         storage.save_starts(&self.starts.encode())
     }
 
-    /// Takes stored settings; false where they are none that the limits allow.
+    /// Restores stored settings. Returns false if they are invalid under the limits.
     fn restore(&mut self, bytes: &[u8]) -> bool {
-        // Limits that have changed must not open the robot.
+        // The key is kept even if changed limits invalidate the rest; otherwise the robot would lose its protection.
         self.settings.key = Settings::stored_key(bytes);
         let Some(settings) = Settings::decode(bytes, &self.firmware_limits) else {
             return false;
@@ -289,14 +291,13 @@ impl Brain {
         let limits = self.firmware_limits.tightened(&self.settings.configuration);
         let reach = self.settings.reach(&self.firmware_limits);
         Limits {
-            // What was set was found to meet.
+            // `set_pulse_range` and `change_servos` have checked that the ranges overlap.
             max_angle: limits.max_angle.min(reach.unwrap_or(f32::INFINITY)),
             ..limits
         }
     }
 
-    /// Takes bytes that came over a transport: any bytes, in any split. Acts at once, but pulses change only in
-    /// [`Self::tick`].
+    /// Receives bytes of a transport, in any split. Requests act at once, but pulses change only in [`Self::tick`].
     pub fn receive(&mut self, now_us: u64, transport: Transport, bytes: &[u8]) {
         for &byte in bytes {
             let decoder = &mut self.decoders[transport.index()];
@@ -312,8 +313,8 @@ impl Brain {
         }
     }
 
-    /// One servo period: decides the next pulses. Call every [`TICK_US`]; a call that comes less than half a period
-    /// after the last changes nothing.
+    /// Advances one servo period and returns the next pulses. Call it every [`TICK_US`]. A call less than half a period after
+    /// the last one changes nothing.
     pub fn tick(&mut self, now_us: u64, inputs: &Inputs) -> Output {
         let tick_us = u64::from(TICK_US);
         let origin_us = *self.origin_us.get_or_insert(now_us.saturating_sub(tick_us));
@@ -333,7 +334,7 @@ impl Brain {
         self.battery_stops =
             self.battery
                 .measure(now_us, inputs.battery_mv, self.limits.battery_limit_mv);
-        // A ramp that begins here moves in this very tick: it counts from the last one.
+        // A ramp that begins here moves in this tick: it counts from the previous one.
         self.watch(now_us);
         self.advance_work();
 
@@ -382,7 +383,7 @@ impl Brain {
         self.output
     }
 
-    /// The boot loader was asked for, nothing moves and all is stored.
+    /// Returns true if the boot loader was requested, nothing moves and everything is stored.
     fn leaves(&mut self, now_us: u64) -> bool {
         if self.state != State::Stopped || !matches!(self.work, Work::Idle) {
             self.bench.stay();
@@ -390,7 +391,7 @@ impl Brain {
         self.bench.leaves(now_us) && self.persist.all_stored()
     }
 
-    /// Through the clamp to the pulses, with the swimmer following.
+    /// Clamps the set-point, advances the odometer and returns the pulses, ns.
     fn command(&mut self, wanted: [f32; 2]) -> [u32; 2] {
         let windows = [0, 1].map(|joint| self.settings.window(joint, &self.limits));
         let clamped = self
@@ -405,20 +406,20 @@ impl Brain {
         clamped.pulses_ns
     }
 
-    /// [`Output::kept`] as it is now: an e-stop that was just received is in it before its answer is sent.
+    /// Current value of [`Output::kept`]. It contains an e-stop before the reply to that e-stop is sent.
     pub fn kept(&self) -> u32 {
         self.resets.word()
     }
 
-    /// Takes bytes to be sent over a transport; returns how many.
+    /// Copies pending bytes of a transport to `out`; returns their number.
     pub fn transmit(&mut self, transport: Transport, out: &mut [u8]) -> usize {
         self.outboxes[transport.index()].take(out)
     }
 
-    /// One bounded step of storing what is not stored yet (an erase, a page, the settings); nothing unless Stopped.
+    /// Does one bounded storage step (an erase, a page, the settings). It does nothing unless Stopped.
     ///
     /// # Errors
-    /// The storage's; the step is tried again a second later.
+    /// The storage's error. The step is tried again a second later.
     pub fn serve_storage<S: Storage>(
         &mut self,
         now_us: u64,
@@ -437,15 +438,15 @@ impl Brain {
     }
 }
 
-/// What a crash would tell, where it was no crash.
+/// Crash message of a robot that has restarted repeatedly after short runs.
 const BROWN_OUT: &str = "3 starts in a row after less than 60 s each: a weak supply under the servos, or quick plug-ins";
 
-/// The paper's robot: a swimmer that is valid whatever was configured.
+/// Model of the paper's robot: the valid default swimmer.
 fn robot_model() -> Model<f32> {
     let robot = Swimmer::robot();
     match Model::new(&robot) {
         Ok(model) => model,
-        // The presets of the model are valid swimmers: its own tests hold them to it.
+        // The presets of the model are valid swimmers, as its own tests check.
         Err(_) => unreachable!("the paper's robot is a valid swimmer"),
     }
 }

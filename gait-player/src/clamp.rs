@@ -1,22 +1,22 @@
-//! The last check before the servos, and the only place where limits on angle, rate and pulse are enforced: whatever
-//! happened before, no pulse outside the window leaves, and no step above the slew limit while pulses are on.
+//! Last check before the servos, and the only place that enforces limits on angle, rate and pulse. Whatever its input, no pulse
+//! leaves the window, and no step exceeds the slew limit while pulses are on.
 
 use crate::Limits;
 use crate::servo::ServoMap;
 use link_protocol::PulseRange;
 
-/// Remembers the last pulses, so that the next ones are not too far away.
+/// Limiter with the last pulses as its state.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Clamp {
     last: Option<[u32; 2]>,
 }
 
-/// What may be done.
+/// Output of the limiter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Clamped {
     /// Pulses, ns.
     pub(crate) pulses_ns: [u32; 2],
-    /// The angles these pulses command, where they are not those that were wanted.
+    /// Angles that these pulses command, rad, if they differ from the requested ones.
     pub(crate) cut: Option<[f32; 2]>,
 }
 
@@ -25,17 +25,17 @@ impl Clamp {
         Self { last: None }
     }
 
-    /// Pulses are off: the next ones may be anywhere in the window.
+    /// Resets the slew limit because pulses are off: the next pulse may be anywhere in the window.
     pub(crate) fn off(&mut self) {
         self.last = None;
     }
 
-    /// The last pulses \[ns\]; `None` while they are off.
+    /// Last pulses, ns. Returns `None` while they are off.
     pub(crate) fn last(&self) -> Option<[u32; 2]> {
         self.last
     }
 
-    /// The pulses for wanted angles \[rad\] within each servo's window.
+    /// Pulses for requested angles \[rad\], within each servo's window.
     pub(crate) fn apply(
         &mut self,
         wanted: [f32; 2],
@@ -46,7 +46,7 @@ impl Clamp {
         let (mut pulses_ns, mut angles, mut cut) = ([0; 2], wanted, false);
         for joint in 0..2 {
             let map = &maps[joint];
-            // `max` and `min` drop a NaN: it ends at a limit, and the slew limit below keeps it slow.
+            // `max` and `min` drop a NaN: it becomes a limit, and the slew limit below bounds the step.
             let angle = wanted[joint].max(-limits.max_angle).min(limits.max_angle);
             let ideal = map.pulse_ns(angle);
             let mut pulse = ideal;
@@ -57,7 +57,7 @@ impl Clamp {
                     last[joint].saturating_add(step),
                 );
             }
-            // Last of all, so that nothing overrides it. A window that is none holds the pulse at its lower end.
+            // The window is applied last, so nothing overrides it. An empty window holds the pulse at its lower end.
             let window = windows[joint];
             pulse = pulse.min(window.longest_ns).max(window.shortest_ns);
             if pulse != ideal || (angle - wanted[joint]).abs() > 0.0 || wanted[joint].is_nan() {
@@ -95,7 +95,7 @@ mod tests {
     }
 
     proptest! {
-        /// R4, at its source.
+        /// Promise R4, for the limiter alone.
         #[test]
         fn no_pulse_outside_the_window_and_no_step_above_the_limit(
             wanted in prop::collection::vec([any_angle(), any_angle()], 1..50),
@@ -151,7 +151,7 @@ mod tests {
         );
     }
 
-    /// Where the pulses may be anywhere, only the angle's own limit is left.
+    /// If the window is wide, only the angle limit acts.
     #[test]
     fn an_angle_that_is_cut_is_told_although_its_pulse_is_the_limits_own() {
         let maps = [ServoMap::ROBOT; 2];

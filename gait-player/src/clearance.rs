@@ -1,18 +1,19 @@
-//! How far apart the side links are. What goes to a robot keeps a margin; and because a joint that turns by δ moves no
-//! point of its link by more than l·δ, a clearance found at one shape vouches for a whole stretch around it. So a gait
-//! is checked between its knots too, without gaps, in a few dozen evaluations.
+//! Clearance between the side links, with a margin for robots. A joint that turns by δ moves no point of its link by more than
+//! l·δ. So the clearance at one shape bounds that of a neighbourhood, and a gait is checked between its knots without gaps in a
+//! few dozen evaluations.
 
 use libm::{cosf, fabsf, sinf, sqrtf};
 use swimmer_model::Links;
 
-/// The margin kept between side links is what the longer one's tip moves in this turn, rad: with either joint one degree
-/// off (a servo's dead band) they still do not touch. The paper's gait (b) comes as close as 1.83 of this margin.
+/// Safety margin between side links as an angle, rad: the tip of the longer link moves by the margin in this turn. With either
+/// joint one degree off (a servo's dead band) the links still do not touch. The paper's gait (b) comes as close as 1.83
+/// margins.
 pub const MARGIN_TURN: f32 = 0.0175;
 
 type Point = [f32; 2];
 
-/// Distance between the side links at shape Φ, m; and not more than the way a side link has left until it lies folded
-/// on the middle one (|φ| = π).
+/// Distance between the side links at shape Φ, m. It is at most the distance that a side link can still move before it is
+/// folded onto the middle one (|φ| = π).
 pub fn clearance(links: &Links<f32>, phi: [f32; 2]) -> f32 {
     let half = 0.5 * links.middle;
     let front = [
@@ -36,12 +37,12 @@ pub fn clearance(links: &Links<f32>, phi: [f32; 2]) -> f32 {
         .min(folded(links.back, phi[1]))
 }
 
-/// The margin kept with these links, m.
+/// Safety margin for these links, m.
 pub fn margin(links: &Links<f32>) -> f32 {
     MARGIN_TURN * links.front.max(links.back)
 }
 
-/// How far any point of a side link moves at most against the other when the joints turn by these angles, m.
+/// Largest displacement of a point of a side link relative to the other for these joint rotations, m.
 pub fn motion(links: &Links<f32>, turn: [f32; 2]) -> f32 {
     links.front * fabsf(turn[0]) + links.back * fabsf(turn[1])
 }
@@ -56,7 +57,7 @@ fn segment_distance(a: [Point; 2], b: [Point; 2]) -> f32 {
         .min(point_distance_squared(a[1], b))
         .min(point_distance_squared(b[0], a))
         .min(point_distance_squared(b[1], a));
-    // Without a line that parts them, segments cross, or lie on one line: then their ends tell the distance.
+    // Disjoint segments are closest at an end. Segments without a separating line cross, unless they are collinear.
     if apart(a, b) || apart(b, a) || side(a[0], a[1], b[0]) == 0.0 {
         sqrtf(ends)
     } else {
@@ -72,7 +73,7 @@ fn point_distance_squared(p: Point, [a, b]: [Point; 2]) -> f32 {
     away[0] * away[0] + away[1] * away[1]
 }
 
-/// A straight way in the plane of shapes, looked at in pieces: each clearance vouches for the way that it allows.
+/// Straight path in shape space, checked step by step: each clearance certifies the stretch that it bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WayCheck {
     from: [f32; 2],
@@ -80,24 +81,25 @@ pub struct WayCheck {
     done: f32,
 }
 
-/// What a [`WayCheck`] knows so far.
+/// Progress of a [`WayCheck`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Way {
-    /// Not everything yet.
+    /// Not decided yet.
     Unknown,
-    /// The way is clear.
+    /// The path is clear.
     Clear,
-    /// The side links come too close here.
+    /// The side links come too close at this shape.
     Crosses([f32; 2]),
 }
 
-/// A way starts and ends in shapes that gaits may have, so it keeps a little less than their margin.
+/// Margin on a path, as a share of the gaits' margin. A path starts and ends at shapes that gaits may have, so it keeps a
+/// little less.
 const WAY_MARGIN: f32 = 0.5;
-/// Smallest share of a way that is gone on.
+/// Smallest step, as a share of the path.
 const SMALLEST_SHARE: f32 = 0.02;
 
 impl WayCheck {
-    /// The way between two shapes.
+    /// Check of the path between two shapes.
     pub fn new(from: [f32; 2], to: [f32; 2]) -> Self {
         Self {
             from,
@@ -106,7 +108,7 @@ impl WayCheck {
         }
     }
 
-    /// Evaluates the clearance once.
+    /// Evaluates the clearance at one shape.
     pub fn advance(&mut self, links: &Links<f32>) -> Way {
         let at = self.done.min(1.0);
         let shape = [0, 1].map(|joint| self.from[joint] + at * (self.to[joint] - self.from[joint]));
@@ -138,7 +140,7 @@ mod tests {
     use swimmer_model::Swimmer;
 
     proptest! {
-        /// The model's own test of crossing is the witness: no distance where links cross, some where they do not.
+        /// Compares with the model's own crossing test: zero clearance if links cross, positive otherwise.
         #[test]
         fn it_agrees_with_the_models_crossing(a in -3.1_f32..3.1, b in -3.1_f32..3.1, robot in any::<bool>()) {
             let swimmer: Swimmer<f32> = if robot { Swimmer::robot() } else { Swimmer::purcell() };
@@ -176,7 +178,7 @@ mod tests {
         assert_eq!(check([0.0; 2], [1.3, 1.3]), Way::Clear);
         assert_eq!(check([0.7; 2], [0.7; 2]), Way::Clear);
         assert!(matches!(check([0.0; 2], [2.1, 2.1]), Way::Crosses(_)));
-        // Around the crossing region's corner: clear at both ends, not between.
+        // Around the corner of the crossing region: clear at both ends, not between.
         assert!(matches!(check([2.8, 1.6], [1.6, 2.8]), Way::Crosses(_)));
         assert!(matches!(check([f32::NAN, 0.0], [0.0; 2]), Way::Crosses(_)));
     }

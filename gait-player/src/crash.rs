@@ -1,17 +1,17 @@
-//! What a crash leaves for the next start: where and why, in memory that a reset spares. Under a checksum, because after a
-//! power cut the same memory holds anything.
+//! Crash note: place and reason of a crash, in memory that a reset preserves. A checksum protects it, because that memory is
+//! random after a power cut.
 
 use core::fmt::{self, Write as _};
 
 use heapless::String;
 use link_protocol::crc32c;
 
-/// Bytes of the message, as the wire carries it.
+/// Capacity of the message, bytes, as on the wire.
 const ROOM: usize = 96;
-/// A place keeps the end of its path: the file's name says more than where the sources lay.
+/// Longest path in the message, bytes. The end of the path is kept, because it has the file's name.
 const PATH: usize = 32;
 
-/// A note in memory that no start-up code clears. Any bits are one, most are none that was written.
+/// Crash note in memory that no start-up code clears. Any bit pattern is a valid value; the checksum identifies written notes.
 ///
 /// ```
 /// use gait_player::CrashNote;
@@ -27,21 +27,21 @@ pub struct CrashNote {
 }
 
 impl CrashNote {
-    /// No crash.
+    /// Empty note.
     pub const NONE: Self = Self {
         len: 0,
         text: [0; ROOM],
         crc32: 0,
     };
 
-    /// `PATH:LINE: MESSAGE`, cut off where it is too long.
+    /// Note of a panic: `PATH:LINE: MESSAGE`, truncated to the capacity.
     pub fn panicked(file: &str, line: u32, message: impl fmt::Display) -> Self {
         let mut start = file.len().saturating_sub(PATH);
         while !file.is_char_boundary(start) {
             start += 1;
         }
         let tail = file.get(start..).unwrap_or_default();
-        // A whole name of a folder, where there is one.
+        // Starts at a whole folder name if there is one.
         let tail = match tail.split_once('/') {
             Some((_, rest)) if start > 0 => rest,
             _ => tail,
@@ -49,7 +49,7 @@ impl CrashNote {
         Self::of(format_args!("{tail}:{line}: {message}"))
     }
 
-    /// The processor gave up at this address; `caller` is where that function was called from.
+    /// Note of a hard fault at this address; `caller` is the return address.
     pub fn faulted(address: u32, caller: u32) -> Self {
         Self::of(format_args!(
             "hard fault at {address:#010x}, called from {caller:#010x}"
@@ -58,7 +58,7 @@ impl CrashNote {
 
     fn of(words: fmt::Arguments<'_>) -> Self {
         let mut text = Cut(String::new());
-        // It only fails where a `Display` does: then what there is.
+        // Fails only if a `Display` does; the text so far is kept.
         let _ = text.write_fmt(words);
         let mut note = Self {
             len: text.0.len() as u32,
@@ -69,7 +69,7 @@ impl CrashNote {
         note
     }
 
-    /// The message; empty where none was written.
+    /// The message; empty if no note was written.
     pub fn message(&self) -> String<ROOM> {
         let bytes = self.text.get(..self.len as usize).unwrap_or_default();
         if self.crc32 != self.checksum() {
@@ -81,7 +81,7 @@ impl CrashNote {
             .unwrap_or_default()
     }
 
-    /// Over length and text; never 0, so that cleared memory is no note.
+    /// Checksum of length and text. It is never 0, so cleared memory is no valid note.
     fn checksum(&self) -> u32 {
         let mut bytes = [0; ROOM + 4];
         bytes[..ROOM].copy_from_slice(&self.text);
@@ -90,7 +90,7 @@ impl CrashNote {
     }
 }
 
-/// Takes what there is room for.
+/// Writer that truncates at the capacity.
 struct Cut(String<ROOM>);
 
 impl fmt::Write for Cut {
@@ -134,7 +134,7 @@ mod tests {
             prop_assert!(shown.is_some() || told.len() + 4 > ROOM, "{told}");
         }
 
-        /// What power leaves in memory is no message; nor is one with a flipped bit.
+        /// Random memory is no message, and neither is a message with a flipped bit.
         #[test]
         fn noise_is_no_message(len: u32, text in prop::array::uniform32(any::<u8>()), crc32: u32, bit in 0..(32_usize * 8)) {
             let mut noise = CrashNote { len, crc32, ..CrashNote::NONE };

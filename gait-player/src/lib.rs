@@ -1,16 +1,16 @@
-//! The robot's brain, free of any HAL: time and bytes in, pulses and bytes out. The same code runs on the chip, in the
-//! emulator, in the twin and in a unit test.
+//! Robot player, free of any HAL: time and bytes in, pulses and bytes out. The same code runs on the chip, in the emulator, in
+//! the digital twin and in unit tests.
 //!
 //! A shell owns the hardware and drives a [`Brain`]:
 //!
 //! 1. at start: [`Brain::new`], then [`Brain::load`] with its [`storage::Storage`];
-//! 2. whenever bytes came: [`Brain::receive`], with the [`Transport`] they came over;
-//! 3. every [`TICK_US`], in step with the servo period: [`Brain::tick`], whose [`Output`] is the only door out;
-//! 4. whenever a transmitter has room: [`Brain::transmit`];
-//! 5. when [`Output::storage_wanted`] says so: [`Brain::serve_storage`], one bounded step a call.
+//! 2. whenever bytes arrive: [`Brain::receive`], with their [`Transport`];
+//! 3. every [`TICK_US`], in step with the servo period: [`Brain::tick`], whose [`Output`] is the only path to the hardware;
+//! 4. whenever a transmitter is free: [`Brain::transmit`];
+//! 5. if [`Output::storage_wanted`] is set: [`Brain::serve_storage`], one bounded step per call.
 //!
-//! Hosts share three truths with the robot: [`servo::ServoMap`], [`servo::plant`] (what a servo makes of pulses) and
-//! [`playback`] (which joint angles a table really gives).
+//! Hosts share three modules with the robot: [`servo::ServoMap`], [`servo::plant`] (response of a servo to its pulses) and
+//! [`playback`] (joint angles that a table produces).
 //!
 //! ```
 //! use gait_player::storage::MemoryStorage;
@@ -28,7 +28,7 @@
 //! }
 //! ```
 #![cfg_attr(not(test), no_std)]
-// Knots, ticks, microseconds and pulses are bounded where they enter; `as` from a float saturates and NaN becomes 0.
+// Knots, ticks, microseconds and pulses are checked on entry. `as` from a float saturates, and NaN becomes 0.
 #![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 
 pub mod brain;

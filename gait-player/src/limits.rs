@@ -1,5 +1,4 @@
-//! What the servos and the swimmer's body allow. The firmware brings its own limits; a configuration may only tighten
-//! them.
+//! Limits of the servos and the swimmer's body. The firmware sets its own limits; a configuration may only tighten them.
 
 use crate::TICK_US;
 use crate::servo::ServoMap;
@@ -16,22 +15,23 @@ pub struct Limits {
     pub pulse_min_ns: u32,
     /// Longest pulse, ns.
     pub pulse_max_ns: u32,
-    /// Pulse of a straight joint as built, ns; settings may lie [`CENTRE_ROOM_NS`] from it.
+    /// Pulse of a straight joint as built, ns. Settings may differ from it by [`CENTRE_ROOM_NS`].
     pub centre_ns: u32,
-    /// Angle per pulse as built, rad/µs; settings may differ from it by [`SLOPE_ROOM`]. A step of the angle is a step of the
-    /// pulse by way of the slope: a robot that took any slope for its own would take any step for slow.
+    /// Angle per pulse as built, rad/µs. Settings may differ from it by [`SLOPE_ROOM`]. The slope converts the rate limit to
+    /// pulses, so an arbitrary slope would defeat that limit.
     pub slope_rad_per_us: f32,
-    /// The battery is low below this, mV.
+    /// Low-battery limit, mV.
     pub battery_limit_mv: u16,
 }
 
-/// The horn sits on its spline by teeth of 14°, and no two servos are straight at the same pulse: 20 µs are 31° here.
+/// Allowed deviation of a servo's centre, ns. The horn sits on its spline by teeth of 14°, and servos differ in their straight
+/// pulse; 20 µs are 31° here.
 pub const CENTRE_ROOM_NS: u32 = 20_000;
-/// Share by which a servo's slope may differ from that of its kind.
+/// Allowed relative deviation of a servo's slope from its type.
 pub const SLOPE_ROOM: f32 = 0.1;
 
 impl Limits {
-    /// The robot's: sail-winch servos, hard clamp inside 600 to 2400 µs, a pack of 4.8 V.
+    /// Limits of the robot: sail-winch servos, hard clamp inside 600 to 2400 µs, a pack of 4.8 V.
     pub const ROBOT: Self = Self {
         max_angle: 2.8,
         max_rate: 3.5,
@@ -52,19 +52,19 @@ impl Limits {
         }
     }
 
-    /// A servo may be set up with this centre \[ns\].
+    /// Returns true if a servo may have this centre \[ns\].
     pub fn allows_centre(&self, centre_ns: u32) -> bool {
         (self.pulse_min_ns..=self.pulse_max_ns).contains(&centre_ns)
             && centre_ns.abs_diff(self.centre_ns) <= CENTRE_ROOM_NS
     }
 
-    /// A servo may be set up with this slope \[rad/µs\]; no number is none.
+    /// Returns true if a servo may have this slope \[rad/µs\]; false for NaN.
     pub fn allows_slope(&self, slope_rad_per_us: f32) -> bool {
         let share = slope_rad_per_us / self.slope_rad_per_us;
         (1.0 - SLOPE_ROOM..=1.0 + SLOPE_ROOM).contains(&share)
     }
 
-    /// Largest step of an angle in one tick, rad.
+    /// Largest step of an angle per tick, rad.
     pub fn max_step(&self) -> f32 {
         self.max_rate * (TICK_US as f32 * 1e-6)
     }

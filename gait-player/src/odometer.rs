@@ -1,10 +1,10 @@
-//! Where the model says the robot is: the commanded angles, swum on board in f32. One evaluation of the local
-//! connection a tick, at the middle of the step (second order), because trigonometry is dear without floating point.
+//! Dead reckoning on board: integrates the model along the commanded angles in f32. One evaluation of the local connection per
+//! tick, at the midpoint (second order), because trigonometry is slow without an FPU.
 
 use nalgebra::Vector2;
 use swimmer_model::{Model, Pose};
 
-/// Adds up the swimmer's steps.
+/// Integrator of the swimmer's pose.
 #[derive(Clone, Debug)]
 pub(crate) struct Odometer {
     pose: Pose<f32>,
@@ -17,12 +17,12 @@ impl Odometer {
         }
     }
 
-    /// Starts again at the origin.
+    /// Resets the pose to the origin.
     pub(crate) fn reset(&mut self) {
         self.pose = Pose::identity();
     }
 
-    /// The joints went from one shape to another.
+    /// Integrates one step between two shapes.
     pub(crate) fn step(&mut self, model: &Model<f32>, from: [f32; 2], to: [f32; 2]) {
         let (from, to) = (Vector2::from(from), Vector2::from(to));
         let turn = to - from;

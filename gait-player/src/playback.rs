@@ -1,40 +1,39 @@
-//! Which joint angles a table really gives: the brain's own set-points and pulses at 50 Hz, through the servo plant. The
-//! twin moves by the very same parts, so predictions and fits that follow this path know what the tank sees.
+//! Joint angles that a table produces: the brain's set-points and pulses at 50 Hz, through the servo model. The digital twin
+//! uses the same parts, so predictions and fits along this path match the tank.
 
 use crate::ramp::{NEUTRAL, Ramp};
 use crate::servo::{ServoMap, plant::PlantParameters, plant::ServoPlant};
 use crate::{GaitTable, Limits, TICK_US};
 
-/// What is played, by what.
+/// Table with period, maps, limits and servo model.
 #[derive(Clone, Copy, Debug)]
 pub struct Playback<'a> {
     /// The table.
     pub table: &'a GaitTable,
     /// Duration of a cycle, µs.
     pub period_us: u32,
-    /// The servos' maps.
+    /// Maps of the servos.
     pub maps: [ServoMap; 2],
-    /// Limits in force (they shape the soft start).
+    /// Limits in force. They shape the soft start.
     pub limits: Limits,
-    /// The servos.
+    /// Servo model.
     pub plant: PlantParameters,
 }
 
-/// A vertex of the path: between two of them both angles change at a constant rate.
+/// Vertex of the path. Between two vertices both angles change at a constant rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlayedPoint {
     /// Time since the reported cycle's start, s.
     pub time_s: f64,
-    /// What the joints do, rad.
+    /// Joint angles, rad.
     pub angles: [f64; 2],
-    /// What they are commanded, rad (held for a tick).
+    /// Commanded joint angles, rad (held for a tick).
     pub command: [f64; 2],
 }
 
 impl Playback<'_> {
-    /// Visits the path of one cycle (0 is the first), from its start to its end, both included. The play before it is
-    /// run too: soft start from neutral and earlier cycles. From cycle 1 on the servos are in their steady state for
-    /// any gait that is larger than their dead band.
+    /// Visits the path of one cycle (0 is the first), both ends included. The motion before it is simulated too: soft start
+    /// from neutral and earlier cycles. From cycle 1 on the servos are in steady state if the gait exceeds their dead band.
     pub fn cycle(&self, cycle: u32, mut visit: impl FnMut(PlayedPoint)) {
         let tick = u64::from(TICK_US);
         let mut servos = [ServoPlant::new(0.0); 2];
@@ -52,7 +51,7 @@ impl Playback<'_> {
                 .table
                 .phase((tick_start % period) as u32, self.period_us);
             let command = self.command(self.table.at(phase).angles);
-            // Up to the end of the tick, or to where the reported cycle starts or ends within it.
+            // Ends at the tick, or at the start or end of the reported cycle within it.
             let border = if now < start { start } else { end };
             let until = (tick_start + tick).min(border);
             if now < start {
@@ -69,7 +68,7 @@ impl Playback<'_> {
         }
     }
 
-    /// Command angles of a set-point: through pulse and timer.
+    /// Commanded angles of a set-point, after rounding to pulses and timer steps, rad.
     pub fn command(&self, setpoint: [f32; 2]) -> [f64; 2] {
         core::array::from_fn(|joint| {
             let map = &self.maps[joint];
@@ -115,19 +114,19 @@ impl Playback<'_> {
     }
 }
 
-/// One of several tables that are played one after the other.
+/// One table in a sequence of plays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlayedLeg<'a> {
     /// The robot's table.
     pub table: &'a GaitTable,
-    /// Cycles.
+    /// Number of cycles.
     pub cycles: u32,
     /// Duration of a cycle, µs.
     pub period_us: u32,
 }
 
-/// Visits the set-points, one a tick, from the first of the soft start to the one at which the joints are straight again, of
-/// tables that follow each other without a pause ([`link_protocol::Request::Follow`]).
+/// Visits the set-points of tables that follow each other without a pause ([`link_protocol::Request::Follow`]), one per tick,
+/// from the first of the soft start until the joints are straight again.
 pub fn setpoints(legs: &[PlayedLeg<'_>], limits: &Limits, mut visit: impl FnMut([f32; 2])) {
     let (Some(first), Some(last)) = (legs.first(), legs.last()) else {
         return;
@@ -137,7 +136,7 @@ pub fn setpoints(legs: &[PlayedLeg<'_>], limits: &Limits, mut visit: impl FnMut(
     for at in (0..u64::from(ramp.duration_us())).step_by(TICK_US as usize) {
         visit(ramp.at(at));
     }
-    // What is left of a tick at the end of a leg belongs to the next one.
+    // The rest of a tick at the end of a leg belongs to the next one.
     let mut over = 0;
     for leg in legs {
         let period = u64::from(leg.period_us.max(1));
@@ -156,7 +155,7 @@ pub fn setpoints(legs: &[PlayedLeg<'_>], limits: &Limits, mut visit: impl FnMut(
 }
 
 impl Playback<'_> {
-    /// Visits the path that servos at rest at neutral take through these set-points, one a tick, from its start to its end.
+    /// Visits the path of servos that start at rest at neutral and follow these set-points, one per tick, both ends included.
     pub fn through(
         &self,
         setpoints: impl IntoIterator<Item = [f32; 2]>,

@@ -1,18 +1,18 @@
-//! The way from one pair of angles to another while nothing plays: the soft start to a gait's first knot, the swap to
-//! another table, and the stop to neutral. Straight in the plane of shapes, or through neutral where straight crosses.
+//! Ramps between two shapes outside a play: soft start to a gait's first knot, swap to another table, and stop to neutral. The
+//! path is straight in shape space, or passes through neutral if the straight path crosses.
 
 use crate::{Limits, TICK_US};
 
 /// Neutral: the straight swimmer.
 pub const NEUTRAL: [f32; 2] = [0.0; 2];
 
-/// A soft start takes at least this long where it moves at all, µs, so that the tank stays calm.
+/// Shortest soft start that moves at all, µs, so that the tank stays calm.
 const GENTLE_US: f32 = 1.0e6;
-/// And no longer than this, through neutral too: the operator is promised it. Where the limits leave no time for the
-/// ease, it is given up before the time is.
+/// Longest soft start, µs, also through neutral: a promise to the operator. If the limits leave too little time, the easing is
+/// reduced first.
 const LONGEST_US: f32 = 2.0e6;
 
-/// A way in time.
+/// Ramp over time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ramp {
     first: Leg,
@@ -24,18 +24,18 @@ struct Leg {
     from: [f32; 2],
     to: [f32; 2],
     duration_us: u32,
-    /// Share of the eased profile, 0 to 1; the rest goes at a constant rate.
+    /// Share of the eased profile, 0 to 1; the rest has a constant rate.
     ease: f32,
 }
 
 impl Ramp {
-    /// A soft start: eased at both ends, never faster than the limits allow, about a second where they allow it, at most
-    /// two within limits that [`link_protocol::Configuration`] may have.
+    /// Soft start: eased at both ends, within the limits, about one second if they allow it. At most two seconds for all limits
+    /// that [`link_protocol::Configuration`] may have.
     pub fn soft(from: [f32; 2], to: [f32; 2], via_neutral: bool, limits: &Limits) -> Self {
         let corner = if via_neutral { NEUTRAL } else { to };
         let wanted_us = [(from, corner), (corner, to)].map(|(a, b)| Leg::wanted_us(a, b, limits));
-        // Each leg is rounded up to whole ticks where there is time for it: two legs may want less than there is and yet not
-        // find room for both.
+        // Each leg is rounded up to whole ticks if there is time: two rounded legs can exceed a total that the unrounded ones
+        // satisfy.
         let rounded_us = wanted_us.map(whole_ticks);
         let share = if rounded_us[0].saturating_add(rounded_us[1]) > LONGEST_US as u32 {
             Some((LONGEST_US / (wanted_us[0] + wanted_us[1])).min(1.0))
@@ -48,8 +48,8 @@ impl Ramp {
         }
     }
 
-    /// The way to neutral at the full rate: what every stop takes. It is not checked for crossing, because it must begin
-    /// at once; within [`Limits::ROBOT`]'s largest angle no such way brings the side links nearer than where it starts
+    /// Ramp of every stop: to neutral at the full rate. It is not checked for crossing, because it must begin at once. Within
+    /// the largest angle of [`Limits::ROBOT`] no such path brings the side links closer than at its start
     /// (`tests/player/crossing.rs`).
     pub fn to_neutral(from: [f32; 2], limits: &Limits) -> Self {
         let first = Leg {
@@ -64,14 +64,14 @@ impl Ramp {
         }
     }
 
-    /// Time from end to end, µs.
+    /// Total duration, µs.
     pub fn duration_us(&self) -> u32 {
         self.first
             .duration_us
             .saturating_add(self.second.map_or(0, |leg| leg.duration_us))
     }
 
-    /// Angles `elapsed_us` after the start; the last ones ever after.
+    /// Angles `elapsed_us` after the start, rad; constant after the end.
     pub fn at(&self, elapsed_us: u64) -> [f32; 2] {
         match &self.second {
             Some(second) if elapsed_us >= u64::from(self.first.duration_us) => {
@@ -83,28 +83,28 @@ impl Ramp {
 }
 
 impl Leg {
-    /// Time that a soft leg would take, µs.
+    /// Duration of a soft leg without a time limit, µs.
     fn wanted_us(from: [f32; 2], to: [f32; 2], limits: &Limits) -> f32 {
-        // The eased profile s = t²(3 - 2t) is 1.5 times as fast in its middle as on average.
+        // The eased profile s = t²(3 - 2t) is 1.5 times as fast at its midpoint as on average.
         let eased_us = 1.5 * fastest_us(from, to, limits);
         eased_us.max(GENTLE_US.min(3.0 * eased_us))
     }
 
-    /// A soft leg: as long as it would be, or this share of it where time is short.
+    /// Soft leg with its natural duration, or with this share of it if time is short.
     fn soft(from: [f32; 2], to: [f32; 2], share: Option<f32>, limits: &Limits) -> Self {
         let (fastest_us, wanted_us) = (
             fastest_us(from, to, limits),
             Self::wanted_us(from, to, limits),
         );
         let duration_us = match share {
-            // Rounded down, so that two legs together keep the promise.
+            // Rounded down, so two legs together keep the promise.
             Some(share) => {
                 let ticks = libm::floorf(share * wanted_us / TICK_US as f32 + 1e-3);
                 (ticks as u32 * TICK_US).max(whole_ticks(fastest_us))
             }
             None => whole_ticks(wanted_us),
         };
-        // A share `e` of ease is 1 + e/2 times as fast in its middle as on average.
+        // A share `e` of easing makes the midpoint 1 + e/2 times as fast as the average.
         let spare = duration_us as f32 / fastest_us - 1.0;
         Self {
             from,
@@ -124,25 +124,25 @@ impl Leg {
     }
 }
 
-/// The larger of both joints' ways, rad.
+/// Larger of both joints' rotations, rad.
 fn distance(from: [f32; 2], to: [f32; 2]) -> f32 {
     libm::fmaxf(libm::fabsf(to[0] - from[0]), libm::fabsf(to[1] - from[1]))
 }
 
-/// Time at the full rate, µs.
+/// Duration at the full rate, µs.
 fn fastest_us(from: [f32; 2], to: [f32; 2], limits: &Limits) -> f32 {
     distance(from, to) / limits.max_rate * 1e6
 }
 
-/// Rounded up to whole ticks: a ramp's end falls on a tick and the last step is no longer than the others.
+/// Rounds up to whole ticks, so that a ramp ends on a tick and its last step is no longer than the others.
 fn whole_ticks(us: f32) -> u32 {
-    // A hair less than the quotient: rounding must not add a tick to a way that fits.
+    // A small tolerance: rounding must not add a tick to a fitting duration.
     let ticks = libm::ceilf(us / TICK_US as f32 - 1e-3);
     (ticks.max(0.0) as u32).saturating_mul(TICK_US)
 }
 
 #[cfg(test)]
-#[allow(clippy::float_cmp)] // a ramp's ends are exact
+#[allow(clippy::float_cmp)] // the ends of a ramp are exact
 mod tests {
     use super::*;
     use proptest::prelude::*;
@@ -173,7 +173,7 @@ mod tests {
             prop_assert!(Ramp::soft(NEUTRAL, [c, d], false, &Limits::ROBOT).duration_us() <= 2_000_000);
         }
 
-        /// From anywhere, through neutral too, with the tightest pair of limits that Configure allows.
+        /// Any start, also through neutral, with the tightest limits that Configure allows.
         #[test]
         fn every_soft_start_takes_at_most_two_seconds(
             ends in prop::array::uniform4(-1.0_f32..=1.0), corners in any::<bool>(), via in any::<bool>(),
@@ -187,7 +187,7 @@ mod tests {
         }
     }
 
-    /// Found by the law above: 1.06 and 0.92 s are less than two, but not when each is rounded up to a tick.
+    /// Counterexample of the property above: 1.06 and 0.92 s are less than two, but not if each is rounded up to a tick.
     #[test]
     fn two_legs_that_want_just_less_than_two_seconds_get_no_more() {
         let limits = Limits {

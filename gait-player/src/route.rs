@@ -1,11 +1,11 @@
-//! The way to a gait's first knot, decided piece by piece: straight where the side links stay clear, through neutral
-//! where they would not, nowhere where neither is clear.
+//! Route to a gait's first knot, decided step by step: straight if the side links stay clear, otherwise through neutral,
+//! otherwise refused.
 
 use crate::clearance::{Way, WayCheck};
 use crate::ramp::NEUTRAL;
 use swimmer_model::Links;
 
-/// A decision in progress.
+/// Decision in progress.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Route {
     from: [f32; 2],
@@ -21,16 +21,16 @@ enum Leg {
     FromNeutral,
 }
 
-/// What is decided.
+/// State of the decision.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Decision {
-    /// Nothing yet.
+    /// Not decided yet.
     Unknown,
-    /// Go straight.
+    /// Straight path.
     Straight,
-    /// Go through neutral.
+    /// Path through neutral.
     ViaNeutral,
-    /// There is no clear way; the last look was here.
+    /// No path is clear; the last evaluation failed at this shape.
     Crosses([f32; 2]),
 }
 
@@ -44,13 +44,13 @@ impl Route {
         }
     }
 
-    /// It begins here, to the last bit.
+    /// Returns true if the route begins at exactly this shape.
     #[allow(clippy::float_cmp)]
     pub(crate) fn begins_at(&self, from: [f32; 2]) -> bool {
         self.from == from
     }
 
-    /// Looks once.
+    /// Evaluates the clearance once.
     pub(crate) fn advance(&mut self, links: &Links<f32>) -> Decision {
         match (self.check.advance(links), self.leg) {
             (Way::Unknown, _) => {}
@@ -87,7 +87,7 @@ mod tests {
     #[test]
     fn straight_where_clear_around_where_not_nowhere_where_neither() {
         assert_eq!(decide([0.0; 2], [1.2, 1.2]), Decision::Straight);
-        // Both ends are clear, the middle (2.15, 2.15) is not; nor is it with the signs turned.
+        // Both ends are clear, the midpoint (2.15, 2.15) is not; the same with opposite signs.
         assert_eq!(decide([2.8, 1.5], [1.5, 2.8]), Decision::ViaNeutral);
         assert_eq!(decide([-1.5, -2.8], [-2.8, -1.5]), Decision::ViaNeutral);
         assert!(matches!(

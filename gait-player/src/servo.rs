@@ -1,10 +1,10 @@
-//! Between joint angle and servo pulse: the one map, used by the brain, the twin, the calibration and the optimiser.
+//! Map between joint angle and servo pulse, shared by the brain, the twin, the calibration and the optimiser.
 
 pub mod plant;
 
 use link_protocol::{ANGLE_UNIT_RAD, ServoSettings};
 
-/// The map of one servo: `pulse = centre ± (angle + trim) / slope`. Pulses are carried in ns: one µs is 1.57° here.
+/// Map of one servo: `pulse = centre ± (angle + trim) / slope`. Pulses are in ns, because one µs is 1.57° here.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ServoMap {
     /// Pulse of the straight joint, ns.
@@ -18,7 +18,7 @@ pub struct ServoMap {
 }
 
 impl ServoMap {
-    /// The robot's Hitec HS-785HB as built: 1500 µs straight, 1.57° a µs.
+    /// The robot's Hitec HS-785HB as built: 1500 µs straight, 1.57° per µs.
     pub const ROBOT: Self = Self {
         centre_ns: 1_500_000,
         slope_rad_per_us: 0.0274,
@@ -26,23 +26,23 @@ impl ServoMap {
         trim: 0.0,
     };
 
-    /// Pulse for a joint angle \[rad\], ns, rounded; not limited here (the clamp does that). No angle, no map: centre.
+    /// Pulse for a joint angle \[rad\], ns, rounded and not limited (the clamp does that). NaN gives the centre.
     pub fn pulse_ns(&self, angle: f32) -> u32 {
         let away_ns = (angle + self.trim) / self.slope_rad_per_us * 1000.0;
         let away_ns = if self.reversed { -away_ns } else { away_ns };
-        // Two steps: the sum in f32 would lose the last digits of the nanoseconds. `as` saturates, NaN is 0.
+        // Two steps: the sum in f32 would lose the last digits of the nanoseconds. `as` saturates, and NaN becomes 0.
         self.centre_ns
             .saturating_add_signed(libm::roundf(away_ns) as i32)
     }
 
-    /// Joint angle \[rad\] of a pulse.
+    /// Joint angle of a pulse, rad.
     pub fn angle(&self, pulse_ns: u32) -> f32 {
         let away_us = (i64::from(pulse_ns) - i64::from(self.centre_ns)) as f32 / 1000.0;
         let away = away_us * self.slope_rad_per_us;
         (if self.reversed { -away } else { away }) - self.trim
     }
 
-    /// Nanoseconds for a step of the angle, rounded up.
+    /// Pulse change for a step of the angle, ns, rounded up.
     pub fn step_ns(&self, step: f32) -> u32 {
         libm::ceilf(step / self.slope_rad_per_us * 1000.0) as u32
     }
@@ -73,7 +73,7 @@ mod tests {
             };
             for step in -280_i16..=280 {
                 let angle = f32::from(step) / 100.0;
-                // Half a nanosecond is 1.4e-5 rad; the rest is f32.
+                // Half a nanosecond is 1.4e-5 rad; the rest is rounding of f32.
                 assert!(
                     (map.angle(map.pulse_ns(angle)) - angle).abs() < 1.6e-5,
                     "{angle}"

@@ -1,13 +1,13 @@
-//! How many starts in a row came after runs of under a minute. The chip cannot tell a dip of its supply from a switch: a
-//! servo that pulls the supply down restarts the robot again and again, and only counting shows it (promise R8).
+//! Counter of consecutive runs of less than a minute (promise R8). The chip cannot distinguish a supply dip from switching off:
+//! a servo that pulls the supply down restarts the robot repeatedly, and only a counter reveals it.
 //!
-//! A run counts as short from its start on, until it has lasted; so whatever ends it early finds it counted.
+//! A run counts as short from its start until it has lasted a minute, so every early end is counted.
 
 use link_protocol::crc32c;
 
 const MAGIC: [u8; 4] = *b"RUNS";
 
-/// The record that outlives a start: in RAM that resets spare, and in flash for when power was off.
+/// Record that survives a start: in RAM that resets preserve, and in flash for power cuts.
 ///
 /// ```
 /// use gait_player::ShortStarts;
@@ -18,17 +18,17 @@ const MAGIC: [u8; 4] = *b"RUNS";
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ShortStarts {
-    /// Runs in a row that were short, the present one included until it has lasted for a minute.
+    /// Number of consecutive short runs. The present run counts until it has lasted a minute.
     pub runs: u8,
 }
 
 impl ShortStarts {
     /// Bytes of the record.
     pub const LEN: usize = 12;
-    /// Short runs in a row after which arming is refused.
+    /// Number of short runs in a row that locks arming.
     pub const MOST: u8 = 3;
 
-    /// The record as it is kept: magic, count, CRC-32C of both.
+    /// Encodes the record: magic, count, CRC-32C of both.
     pub fn encode(self) -> [u8; Self::LEN] {
         let [m0, m1, m2, m3] = MAGIC;
         let covered = [m0, m1, m2, m3, self.runs, 0, 0, 0];
@@ -38,13 +38,13 @@ impl ShortStarts {
         bytes
     }
 
-    /// What was kept; `None` where these bytes are no record, as RAM after power was off.
+    /// Decodes a record. Returns `None` if the bytes are invalid, such as RAM after power-on.
     pub fn decode(bytes: &[u8; Self::LEN]) -> Option<Self> {
         let record = Self { runs: bytes[4] };
         (record.encode() == *bytes).then_some(record)
     }
 
-    /// The record from a start on.
+    /// Record after one more start.
     pub(crate) fn start(self) -> Self {
         Self {
             runs: self.runs.saturating_add(1),

@@ -1,8 +1,8 @@
-//! The gait table: up to 512 knots, uniform in the phase of the cycle, each two angles in 1e-4 rad; between them a
-//! periodic cubic with slopes of fourth order, so that the cycle closes and its rate is continuous everywhere.
+//! Gait table: up to 512 knots, uniform in the phase of the cycle, each two angles in 1e-4 rad. A periodic cubic with slopes of
+//! fourth order connects them, so that the cycle closes and its rate is continuous.
 //!
-//! Bytes (the wire's and the flash's): for each knot φ₁ then φ₂, i16 little-endian. Knot `i` of `n` is at u = i/n; after
-//! the last comes the first again.
+//! Bytes on the wire and in flash: for each knot φ₁ then φ₂, i16 little-endian. Knot `i` of `n` is at u = i/n; the first knot
+//! follows the last one.
 
 pub mod check;
 
@@ -10,12 +10,12 @@ use core::fmt;
 pub use link_protocol::MAX_KNOTS;
 use link_protocol::{ANGLE_UNIT_RAD, Joint, MAX_TABLE, crc32c};
 
-/// Fewest knots of a table.
+/// Smallest number of knots.
 pub const MIN_KNOTS: usize = 2;
 /// Bytes of a knot.
 pub const KNOT_BYTES: usize = 4;
 
-/// A table of knots; empty until filled.
+/// Table of knots; empty until filled.
 ///
 /// ```
 /// use gait_player::GaitTable;
@@ -34,20 +34,20 @@ pub struct GaitTable {
     len: u16,
 }
 
-/// Why samples make no table.
+/// Reason why samples form no valid table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TableError {
-    /// A table has 2 to 512 knots.
+    /// The number of knots is not in 2 to 512.
     Knots(usize),
-    /// Bytes come in fours.
+    /// The number of bytes is not a multiple of four.
     Bytes(usize),
-    /// An angle that the table cannot hold (±3.2767 rad).
+    /// An angle exceeds the range of the table (±3.2767 rad).
     Angle {
-        /// Which joint.
+        /// Joint of the angle.
         joint: Joint,
-        /// Which knot.
+        /// Index of the knot.
         knot: usize,
-        /// The angle, rad.
+        /// Angle, rad.
         angle: f64,
     },
 }
@@ -75,26 +75,26 @@ impl fmt::Display for TableError {
 
 impl core::error::Error for TableError {}
 
-/// A place in the cycle, exact: after `interval` knots, the fraction of the way to the next.
+/// Exact position in the cycle: an interval between two knots, and a fraction of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Phase {
-    /// Knot before the place.
+    /// Index of the knot before the position.
     pub interval: usize,
     /// 0 at that knot, towards 1 at the next.
     pub fraction: f32,
 }
 
-/// Angles and their rates at a place of the table.
+/// Angles and their slopes at a position in the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shape {
     /// φ₁, φ₂ in rad.
     pub angles: [f32; 2],
-    /// Change per interval, rad.
+    /// Change of φ₁, φ₂ per interval, rad.
     pub slopes: [f32; 2],
 }
 
 impl GaitTable {
-    /// An empty table: it has no knots and plays nothing.
+    /// Empty table: it has no knots and cannot play.
     pub const fn empty() -> Self {
         Self {
             bytes: [0; MAX_TABLE],
@@ -102,10 +102,10 @@ impl GaitTable {
         }
     }
 
-    /// A table of the wire's bytes.
+    /// Parses the bytes of the wire.
     ///
     /// # Errors
-    /// The number of bytes is no number of knots.
+    /// The number of bytes does not match a valid number of knots.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, TableError> {
         if !bytes.len().is_multiple_of(KNOT_BYTES) {
             return Err(TableError::Bytes(bytes.len()));
@@ -123,7 +123,7 @@ impl GaitTable {
     /// Samples a closed curve `u -> (φ₁, φ₂)`, u in [0, 1), rad.
     ///
     /// # Errors
-    /// The number of knots, or an angle that does not fit.
+    /// The number of knots is invalid, or an angle exceeds the range.
     pub fn from_fn(
         knots: usize,
         mut curve: impl FnMut(f64) -> [f64; 2],
@@ -147,13 +147,13 @@ impl GaitTable {
         Ok(table)
     }
 
-    /// A table of so many knots, all zero, to be filled by [`Self::put`].
+    /// Resets to this number of knots, all zero, to be filled by [`Self::put`].
     pub(crate) fn clear(&mut self, knots: u16) {
         self.bytes = [0; MAX_TABLE];
         self.len = knots.min(MAX_KNOTS as u16);
     }
 
-    /// Overwrites bytes; what reaches past the end is left out.
+    /// Overwrites bytes; bytes past the end are ignored.
     pub(crate) fn put(&mut self, offset: usize, bytes: &[u8]) {
         let len = self.knots() * KNOT_BYTES;
         for (place, byte) in self.bytes[..len].iter_mut().skip(offset).zip(bytes) {
@@ -161,14 +161,14 @@ impl GaitTable {
         }
     }
 
-    /// Room for the bytes of a table of so many knots, to be filled from storage.
+    /// Buffer for the bytes of this number of knots, to be filled from storage.
     pub(crate) fn buffer(&mut self, knots: u16) -> &mut [u8] {
         self.clear(knots);
         let len = self.knots() * KNOT_BYTES;
         &mut self.bytes[..len]
     }
 
-    /// The wire's bytes.
+    /// Bytes of the table, as on the wire.
     pub fn bytes(&self) -> &[u8] {
         &self.bytes[..self.knots() * KNOT_BYTES]
     }
@@ -183,7 +183,7 @@ impl GaitTable {
         usize::from(self.len)
     }
 
-    /// Angles of a knot in 1e-4 rad; the index counts on periodically.
+    /// Angles of a knot in 1e-4 rad; the index is periodic.
     pub fn knot(&self, index: usize) -> [i16; 2] {
         let at = index % self.knots().max(1) * KNOT_BYTES;
         match self.bytes.get(at..at + KNOT_BYTES) {
@@ -198,7 +198,7 @@ impl GaitTable {
             .map(|angle| f32::from(angle) * ANGLE_UNIT_RAD)
     }
 
-    /// The place of a time within the cycle; integer arithmetic, so nothing drifts.
+    /// Position of a time within the cycle, by integer arithmetic, so nothing drifts.
     pub fn phase(&self, in_cycle_us: u32, period_us: u32) -> Phase {
         let period = u64::from(period_us.max(1));
         let scaled = u64::from(in_cycle_us) * self.knots() as u64;
@@ -209,16 +209,16 @@ impl GaitTable {
         }
     }
 
-    /// The cubic of an interval, for both joints.
+    /// Cubics of an interval, one per joint.
     pub(crate) fn interval(&self, interval: usize) -> [Cubic; 2] {
-        // Six knots give the slopes at both ends of the interval.
+        // Six knots determine the slopes at both ends of the interval.
         let knots = self.knots().max(1);
         let start = interval % knots + 2 * knots;
         let near: [[i16; 2]; 6] = core::array::from_fn(|i| self.knot(start + i - 2));
         [0, 1].map(|joint| Cubic::new(near.map(|knot| f32::from(knot[joint]))))
     }
 
-    /// Angles and slopes at a place.
+    /// Angles and slopes at a position.
     pub fn at(&self, phase: Phase) -> Shape {
         let cubics = self.interval(phase.interval);
         Shape {
@@ -228,7 +228,7 @@ impl GaitTable {
     }
 }
 
-/// One joint between two knots: `a + b t + c t² + d t³` in 1e-4 rad, t from 0 to 1.
+/// Cubic of one joint between two knots: `a + b t + c t² + d t³` in 1e-4 rad, t from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Cubic {
     pub(crate) a: f32,
@@ -238,7 +238,7 @@ pub(crate) struct Cubic {
 }
 
 impl Cubic {
-    /// From the knots −2 … 3 around the interval from knot 0 to knot 1.
+    /// Cubic of the interval from knot 0 to knot 1, given the knots −2 … 3.
     fn new([k0, k1, k2, k3, k4, k5]: [f32; 6]) -> Self {
         // Central differences of fourth order, exact for quartics.
         let slope0 = (8.0 * (k3 - k1) - (k4 - k0)) / 12.0;

@@ -1,5 +1,5 @@
-//! Effects of requests that may act. Each arm of [`Brain::act`] is the whole effect of one request; authority was checked
-//! before ([`super::requests`]).
+//! Effects of authorised requests. Each arm of [`Brain::act`] is the whole effect of one request; [`super::requests`] has
+//! checked its authority.
 
 use super::requests::Asked;
 use super::settings::Settings;
@@ -18,11 +18,11 @@ use link_protocol::{
 type Outcome = Result<Option<Reply>, Refusal>;
 
 const DONE: Outcome = Ok(Some(Reply::Done));
-/// The reply comes when the work is done.
+/// The reply follows when the work is done.
 const LATER: Outcome = Ok(None);
 
 impl Brain {
-    /// Does what is requested; `None` if the reply comes later.
+    /// Applies a request. Returns `None` if the reply comes later.
     pub(super) fn act(&mut self, now_us: u64, asked: Asked, request: &Request) -> Outcome {
         match request {
             Request::Status => Ok(Some(Reply::Status(self.status(now_us)))),
@@ -51,7 +51,7 @@ impl Brain {
                 let offset = self.tables.begin(upload, *begin)?;
                 Ok(Some(Reply::Wanted { upload, offset }))
             }
-            // Handled before the order of requests.
+            // Handled before the check of the sequence number.
             Request::Chunk(_) => Err(Refusal::NoUpload),
             Request::Commit { upload } => self.commit(asked, *upload, None),
             Request::Follow(follow) => self.follow(asked, *follow),
@@ -68,7 +68,7 @@ impl Brain {
                 }
                 state => Err(Refusal::WrongState(state.name())),
             },
-            // Handled before everything else.
+            // Handled before all other checks.
             Request::Stop | Request::EStop => DONE,
             Request::ClearResets => match self.resets.wait_s() {
                 Some(wait_s) if wait_s > 0 => Err(Refusal::ResetLoop { wait_s }),
@@ -105,7 +105,7 @@ impl Brain {
             },
             Request::EnterBootLoader => {
                 self.only_idle()?;
-                // This run ends early, but not by a fault.
+                // This run ends early, but not by a fault, so it is not a short run.
                 self.clear_starts();
                 self.bench.leave(now_us);
                 DONE
@@ -131,7 +131,7 @@ impl Brain {
         }
     }
 
-    /// Changes maps or ranges of the servos, where they then still meet.
+    /// Changes maps or ranges of the servos. Refuses the change if map and range no longer overlap.
     fn change_servos(&mut self, change: impl FnOnce(&mut Settings)) -> Result<(), Refusal> {
         let mut changed = self.settings;
         change(&mut changed);
@@ -146,7 +146,8 @@ impl Brain {
         self.persist.settings_changed();
     }
 
-    /// The firmware's whole window is no range: with it the angles are not bounded by pulses.
+    /// Sets the pulse range of a servo. The firmware's whole window is stored as no range, because it does not bound the
+    /// angles.
     fn set_pulse_range(&mut self, joint: Joint, range: PulseRange) -> Outcome {
         let whole = PulseRange {
             shortest_ns: self.firmware_limits.pulse_min_ns,
@@ -157,8 +158,8 @@ impl Brain {
         DONE
     }
 
-    /// Sets a trim. While the pulses are on they stand for another angle from then on, and the joint moves back from there
-    /// no faster than allowed; where that angle would lie beyond the largest, no stop could reach neutral in its time.
+    /// Sets a trim. While pulses are on they then correspond to another angle, from which the joint returns within the rate
+    /// limit. The trim is refused if that angle lies beyond the largest one: a stop could not reach neutral in time.
     fn trim(&mut self, joint: Joint, trim: i16) -> Outcome {
         settings::check_trim(trim)?;
         let settings = ServoSettings {
@@ -182,7 +183,7 @@ impl Brain {
         DONE
     }
 
-    /// The upload as what follows the play under way.
+    /// Schedules the uploaded table to play after the present play.
     fn follow(&mut self, asked: Asked, follow: Follow) -> Outcome {
         let Some(under_way) = self.state.play() else {
             return Err(Refusal::WrongState(self.state.name()));
@@ -195,7 +196,7 @@ impl Brain {
         };
         let left_us = self.last_play.unwrap_or(*under_way).left_us();
         check_play(&play, left_us).map_err(|refusal| match refusal {
-            // The period's place among the fields of this request.
+            // Position of the period among the fields of this request.
             Refusal::BadValue { .. } => Refusal::BadValue { field: 2 },
             refusal => refusal,
         })?;
@@ -219,7 +220,7 @@ impl Brain {
         LATER
     }
 
-    /// A play acts only with the table and the settings that its host checked.
+    /// Refuses a play unless table and settings are those that its host checked.
     pub(super) fn check_held(&self, checked: Checked, table: Option<u32>) -> Result<(), Refusal> {
         let table = table.ok_or(Refusal::NoTable)?;
         if checked.table_crc32 != table {
@@ -300,7 +301,7 @@ impl Brain {
                 detached: before,
                 play,
             } => {
-                // The minute of a detached pause begins with its first request.
+                // A repeated request does not extend the minute of a detached pause.
                 let since_us = if detached && !before {
                     now_us
                 } else {
@@ -319,8 +320,8 @@ impl Brain {
     }
 }
 
-/// Refuses a period below a tick, and a detached play that would move the robot for too long without a host; `before_us` is the
-/// motion that is ahead of it.
+/// Refuses a period below one tick, and a detached play that could move the robot too long without a host. `before_us` is the
+/// remaining motion ahead of it, µs.
 fn check_play(play: &Play, before_us: u64) -> Result<(), Refusal> {
     if play.period_us < crate::TICK_US {
         return Err(Refusal::BadValue { field: 1 });

@@ -1,13 +1,13 @@
-//! Promise R8: a battery that is low for a second in all stops the robot, and keeps it from being armed until it has been well
-//! for five. The time below the limit adds up over dips until the battery has been well for a minute: a tired pack recovers
-//! between two strokes, and no single dip need last a second. A pack that was never measured is never low; a missing sample
-//! changes nothing.
+//! Low-battery latch (promise R8). A battery that is low for one second in total stops the robot, and arming is refused until
+//! it has been well for five seconds. The time below the limit accumulates over dips until the battery has been well for a
+//! minute: a weak pack recovers between strokes, so a single dip rarely lasts a second. A battery without samples is never low,
+//! and a missing sample changes nothing.
 
 use crate::TICK_US;
 
 const LOW_FOR_US: u64 = 1_000_000;
 const WELL_FOR_US: u64 = 5_000_000;
-/// Dips further apart than this do not add up. Longer than any stroke.
+/// Dips further apart than this do not accumulate, µs. Longer than any stroke.
 const FORGOTTEN_AFTER_US: u64 = 60_000_000;
 
 /// State of the battery's low-voltage latch.
@@ -25,7 +25,7 @@ pub(crate) struct Battery {
 }
 
 impl Battery {
-    /// Takes the lowest voltage since the last call; returns true if the robot must stop.
+    /// Updates the latch with the lowest voltage since the last call. Returns true if the robot must stop.
     pub(crate) fn measure(&mut self, now_us: u64, measured_mv: Option<u16>, limit_mv: u16) -> bool {
         let passed_us = now_us.saturating_sub(self.measured_us.unwrap_or(now_us));
         self.measured_us = Some(now_us);
@@ -34,7 +34,7 @@ impl Battery {
             return self.latched;
         };
         if mv < limit_mv {
-            // A dip between two samples that is seen once counts a tick, however long ago the sample before was.
+            // A dip between two samples counts as one tick, however old the previous sample is.
             let low_us = if self.below {
                 passed_us
             } else {
@@ -60,7 +60,7 @@ impl Battery {
         self.last_mv
     }
 
-    /// Below its limit, or latched and not well for long enough yet.
+    /// Returns true if the battery is below its limit, or latched and not yet well for long enough.
     pub(crate) fn low(&self) -> bool {
         self.latched || self.below
     }
@@ -74,7 +74,7 @@ mod tests {
     const LOW: Option<u16> = Some(LIMIT_MV - 1);
     const WELL: Option<u16> = Some(LIMIT_MV);
 
-    /// A battery that is sampled at every tick.
+    /// Battery that is sampled at every tick.
     #[derive(Default)]
     struct Ticking {
         battery: Battery,
@@ -100,7 +100,7 @@ mod tests {
         assert!(ticking.pass(20, LOW).stops);
         assert!(ticking.pass(5000, WELL).stops && ticking.battery.low());
         assert!(!ticking.pass(20, WELL).stops && !ticking.battery.low());
-        // What was released starts from nothing.
+        // After the latch is released, the accumulated time starts at zero.
         assert!(!ticking.pass(980, LOW).stops && ticking.pass(20, LOW).stops);
     }
 
@@ -131,7 +131,7 @@ mod tests {
     fn late_samples_count_the_time_between_them() {
         let mut battery = Battery::default();
         assert!(!battery.measure(0, WELL, LIMIT_MV));
-        // A dip after a long gap is one tick, two low samples are the time between them.
+        // A dip after a long gap counts one tick; two low samples count the time between them.
         assert!(!battery.measure(30_000_000, LOW, LIMIT_MV));
         assert!(!battery.measure(30_900_000, LOW, LIMIT_MV));
         assert!(battery.measure(31_000_000, LOW, LIMIT_MV));

@@ -1,24 +1,24 @@
-//! Somebody at the robot: the bench window, which a jumper or BOOTSEL opens, and the way out into the boot loader.
+//! Bench window: presence by jumper or BOOTSEL, and the delayed jump into the boot loader.
 
-/// The window is open for so long from when the jumper closes.
+/// Duration of the bench window after the jumper closes, µs.
 const WINDOW_US: u64 = 120_000_000;
-/// The answer leaves before the robot does.
+/// Delay before the boot loader starts, µs, so that the reply is sent first.
 const LEAVE_AFTER_US: u64 = 200_000;
 
-/// What the bench asked for.
+/// State of the bench window and of a boot-loader request.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Bench {
     /// The jumper is closed, or BOOTSEL pressed.
     closed: bool,
-    /// The window is open before this time.
+    /// End of the window, µs.
     open_until_us: u64,
-    /// The boot loader was asked for, and may be entered from this time on.
+    /// The boot loader was requested and may start from this time on, µs.
     leave_us: Option<u64>,
 }
 
 impl Bench {
-    /// Takes what the shell sees of the jumper. Where it becomes closed the window opens; where it stays so, it closes in its
-    /// time: a jumper that was forgotten is nobody at the robot.
+    /// Samples the jumper. A closing edge opens the window. A jumper that stays closed does not extend it: a forgotten jumper
+    /// is no presence.
     pub(crate) fn look(&mut self, now_us: u64, closed: bool) {
         if closed && !self.closed {
             self.open_until_us = now_us.saturating_add(WINDOW_US);
@@ -30,23 +30,23 @@ impl Bench {
         now_us < self.open_until_us
     }
 
-    /// Seconds left of the window, rounded up.
+    /// Remaining time of the window, s, rounded up.
     pub(crate) fn left_s(&self, now_us: u64) -> u16 {
         let left_us = self.open_until_us.saturating_sub(now_us);
         left_us.div_ceil(1_000_000).min(u64::from(u16::MAX)) as u16
     }
 
-    /// The boot loader was asked for.
+    /// Schedules the jump into the boot loader.
     pub(crate) fn leave(&mut self, now_us: u64) {
         self.leave_us = Some(now_us.saturating_add(LEAVE_AFTER_US));
     }
 
-    /// The robot does something else now: it stays.
+    /// Cancels the jump because another request was accepted.
     pub(crate) fn stay(&mut self) {
         self.leave_us = None;
     }
 
-    /// It is time to leave.
+    /// Returns true if the delay has passed.
     pub(crate) fn leaves(&self, now_us: u64) -> bool {
         self.leave_us.is_some_and(|leave_us| now_us >= leave_us)
     }
@@ -64,7 +64,7 @@ mod tests {
         assert!(bench.open(5) && bench.open(WINDOW_US + 4) && !bench.open(WINDOW_US + 5));
         assert_eq!((bench.left_s(5), bench.left_s(6)), (120, 120));
         assert_eq!(bench.left_s(WINDOW_US + 4), 1);
-        // Forgotten.
+        // The jumper was forgotten.
         bench.look(2 * WINDOW_US, true);
         assert!(!bench.open(2 * WINDOW_US));
         bench.look(2 * WINDOW_US, false);

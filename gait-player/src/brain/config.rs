@@ -1,4 +1,4 @@
-//! What the shell tells the brain, and the one thing the brain tells the shell.
+//! Interface between shell and brain: configuration, boot data, inputs and output.
 
 use crate::{Limits, ShortStarts, servo::ServoMap};
 use heapless::String;
@@ -6,61 +6,61 @@ use link_protocol::{
     Board, Configuration, FirmwareVersion, ResetReason, ServoSettings, StateName, TangentialDrag,
 };
 
-/// What the shell knows at the start.
+/// Configuration that the shell passes at the start.
 #[derive(Clone, Debug)]
 pub struct BrainConfig {
-    /// What the robot says it is.
+    /// Identity that the robot reports.
     pub identity: Identity,
-    /// The firmware's limits; a configuration may tighten them.
+    /// The firmware's limits. A configuration may only tighten them.
     pub limits: Limits,
-    /// Used until another is set.
+    /// Geometry and limits until others are set.
     pub configuration: Configuration,
-    /// Used until others are set.
+    /// Servo maps until others are set.
     pub servos: [ServoSettings; 2],
-    /// Bytes the receive buffer holds.
+    /// Capacity of the receive buffer, bytes.
     pub buffer: u16,
-    /// How the robot came up.
+    /// State of the robot after the start.
     pub boot: Boot,
 }
 
-/// What the robot says it is.
+/// Identity that the robot reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Identity {
-    /// Version and commit.
+    /// Firmware version and commit.
     pub firmware: FirmwareVersion,
-    /// The board.
+    /// Board type.
     pub board: Board,
 }
 
-/// How the robot came up.
+/// State of the robot after a start or reset.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Boot {
-    /// Why.
+    /// Cause of the start.
     pub reset_reason: ResetReason,
-    /// Drawn at random: tells one start from another.
+    /// Random number that identifies this start.
     pub nonce: u32,
-    /// First session number; must not repeat those before a reset (a random number, or a counter that is kept).
+    /// First session number. It must differ from those before the reset: a random number or a persistent counter.
     pub session_seed: u16,
-    /// The last [`Output::kept`], from a register that outlives a reset but not a power cut; any value else.
+    /// Last [`Output::kept`], from a register that survives a reset but not a power cut; any other value after power-on.
     pub kept: u32,
-    /// What the last crash left to tell; empty for none.
+    /// Message of the last crash; empty if there was none.
     pub crash_message: String<96>,
-    /// The last [`Output::starts`], from RAM that outlives resets; `None` where it holds none, as after power was off. Then
-    /// [`crate::Brain::load`] asks the storage.
+    /// Last [`Output::starts`], from RAM that survives resets. `None` if the RAM holds no valid record, as after power-on;
+    /// [`crate::Brain::load`] then reads the storage.
     pub starts: Option<ShortStarts>,
 }
 
-/// A way to the robot. Each has its decoder and its bytes on their way out; the session belongs to the one that greeted last.
+/// Transport to the robot. Each has its own decoder and outbox; the session belongs to the transport of the last greeting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Transport {
-    /// The serial line, with the radio on it: anybody in range may speak there.
+    /// Serial line with the radio. Anyone within radio range can send on it.
     Uart,
-    /// The USB cable: whoever speaks there is at the robot.
+    /// USB cable. Its sender is at the robot.
     Usb,
 }
 
 impl Transport {
-    /// Both.
+    /// Both transports.
     pub const ALL: [Self; 2] = [Self::Uart, Self::Usb];
 
     pub(crate) fn index(self) -> usize {
@@ -68,46 +68,45 @@ impl Transport {
     }
 }
 
-/// What the shell measured by the time of a tick.
+/// Measurements of the shell at a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Inputs {
-    /// Battery (lowest since the last tick), mV; `None` where no divider is fitted, or no sample came.
+    /// Lowest battery voltage since the last tick, mV. `None` without a divider or a sample.
     pub battery_mv: Option<u16>,
-    /// The radio says it is connected (STATE pin); true where there is no such pin. Nothing is sent over the UART while it is
-    /// false.
+    /// Connection state of the radio (STATE pin); true if there is no such pin. The UART sends nothing while it is false.
     pub link_up: bool,
-    /// A host has opened the USB port. Nothing is sent there while it is false.
+    /// A host has opened the USB port. USB sends nothing while it is false.
     pub usb_up: bool,
-    /// The bench jumper is closed, or BOOTSEL is pressed. Where it becomes so, the bench window opens for two minutes.
+    /// The bench jumper is closed or BOOTSEL is pressed. A closing edge opens the bench window for two minutes.
     pub present: bool,
 }
 
-/// The only door out.
+/// Output of a tick: the only path to the hardware.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(clippy::struct_excessive_bools)] // each is a wire or a task of the shell
 pub struct Output {
-    /// Pulses of both servos, ns, for the next period; `None`: off.
+    /// Pulses of both servos for the next period, ns. `None` switches them off.
     pub pulses_ns: Option<[u32; 2]>,
     /// Commanded angles φ₁, φ₂, rad (kept while pulses are off).
     pub setpoint: [f32; 2],
-    /// The LED; while playing it is lit for the first 100 ms of each cycle and dark otherwise, for the cameras.
+    /// LED state. During a play it is lit for the first 100 ms of each cycle and dark otherwise, as a mark for the cameras.
     pub led: bool,
-    /// The first 100 ms of a cycle.
+    /// True in the first 100 ms of a cycle.
     pub cycle_flash: bool,
-    /// What the brain is doing.
+    /// State of the brain.
     pub state: StateName,
-    /// To be kept in a register that outlives a reset; see [`Boot::kept`].
+    /// Word to keep in a register that survives a reset; see [`Boot::kept`].
     pub kept: u32,
-    /// [`crate::Brain::serve_storage`] has something to do (pulses are off).
+    /// [`crate::Brain::serve_storage`] has work to do (pulses are off).
     pub storage_wanted: bool,
-    /// To be kept in RAM that outlives a reset; see [`Boot::starts`].
+    /// Record to keep in RAM that survives a reset; see [`Boot::starts`].
     pub starts: ShortStarts,
-    /// Leave for the chip's boot loader now: it was asked for, its answer has left and everything is stored.
+    /// Enter the chip's boot loader now: it was requested, its reply was sent and everything is stored.
     pub boot_loader: bool,
 }
 
 impl Boot {
-    /// Power was applied and nothing is known from before.
+    /// Boot data after power-on, without any earlier record.
     pub fn power_on(nonce: u32, session_seed: u16) -> Self {
         Self {
             reset_reason: ResetReason::PowerOn,
@@ -122,7 +121,7 @@ impl Boot {
 
 #[cfg(test)]
 impl BrainConfig {
-    /// The paper's robot, of no version in particular, as its power comes on.
+    /// The paper's robot after power-on, with an arbitrary version.
     pub(crate) fn in_tests() -> Self {
         let firmware = FirmwareVersion {
             major: 0,
@@ -136,7 +135,7 @@ impl BrainConfig {
 }
 
 impl BrainConfig {
-    /// The paper's robot: its geometry and limits, its servos as built.
+    /// The paper's robot: geometry, limits and servos as built.
     pub fn robot(identity: Identity, boot: Boot) -> Self {
         let servo = ServoSettings {
             centre_ns: ServoMap::ROBOT.centre_ns,

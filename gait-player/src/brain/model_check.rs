@@ -1,6 +1,6 @@
-//! Promise R6, by exhaustion: breadth first over everything that can happen to a brain, until nothing new is reached. The
-//! brains are real; two are the same where [`shape::Shape`] is. Of every step it is asked that nothing but an arm that was
-//! granted leads out of a stop, and nothing without its signature where there is a key.
+//! Model check of promise R6: breadth-first search over all events until no new state is reached. It runs the real brain; two
+//! worlds are equal if their [`shape::Shape`] is. Every step must satisfy the invariants: only a granted arm leaves a stop, and
+//! with a key nothing acts without its signature.
 
 mod event;
 mod judge;
@@ -43,7 +43,7 @@ fn enumerate(finer: Finer) {
     }
     assert_eq!(reached.len(), 8, "not every state was reached");
     assert_eq!(guarded.len(), 8, "not every state was reached with a key");
-    // Where the battery is left out, so is its cause.
+    // Without the battery, its stop cause does not occur.
     let met = if finer == Finer::Presence { 6 } else { 7 };
     assert_eq!(causes.len(), met, "not every cause of stopping was met");
     println!(

@@ -1,4 +1,4 @@
-//! From tick to tick: where the joints should be, and what ends.
+//! Motion per tick: set-points of every state, and the failsafes that end a motion.
 
 use super::Brain;
 use super::state::{Progress, State};
@@ -8,13 +8,13 @@ use crate::TICK_US;
 use crate::ramp::{NEUTRAL, Ramp};
 use link_protocol::{Play, Refusal, Reply, StopCause};
 
-/// Pulses stay on so long at neutral.
+/// Time with pulses on at neutral before they go off, µs.
 const SETTLE_US: u64 = 500_000;
-/// A detached pause holds its pose so long.
+/// Longest detached pause, µs.
 const DETACHED_PAUSE_US: u64 = 60_000_000;
 
 impl Brain {
-    /// Failsafes: what must end, ends here; the more severe cause wins.
+    /// Failsafes: stops a motion that must end. The most severe cause is reported.
     pub(super) fn watch(&mut self, now_us: u64) {
         if let State::Paused {
             since_us,
@@ -25,7 +25,7 @@ impl Brain {
         {
             self.stop(StopCause::PauseExpired);
         }
-        // A robot that stops already needs nobody to hear from.
+        // A robot that is already stopping does not need a live link.
         let stopping = matches!(self.state, State::Stopping { .. } | State::Settling { .. });
         if self.state.powered()
             && !stopping
@@ -39,7 +39,8 @@ impl Brain {
         }
     }
 
-    /// Ramps to neutral from where the servos are; latched. Where it stops already, the more severe cause is kept.
+    /// Starts the ramp to neutral from the commanded angles; latched. A robot that is already stopping keeps the more severe
+    /// cause.
     pub(super) fn stop(&mut self, cause: StopCause) {
         self.drop_work();
         match self.state {
@@ -61,7 +62,7 @@ impl Brain {
         }
     }
 
-    /// No pulses from the next tick on; latched.
+    /// Switches the pulses off from the next tick on; latched.
     pub(super) fn estop(&mut self) {
         self.drop_work();
         self.leave_play(State::EStopped);
@@ -70,8 +71,8 @@ impl Brain {
         self.resets.estop = true;
     }
 
-    /// A request that still waits for its check will not act any more, and is told so: its host may be another one
-    /// than the one that stops. A commit may be asked again.
+    /// Cancels a request that waits for its check, and sends its refusal: the host that stops may be another one. A commit may
+    /// be repeated.
     fn drop_work(&mut self) {
         let (reply_to, refusal) = match core::mem::replace(&mut self.work, Work::Idle) {
             Work::Idle => return,
@@ -83,8 +84,7 @@ impl Brain {
         self.finish(reply_to, Reply::Refused(refusal));
     }
 
-    /// Ends a play before its time. A committed table becomes the active one at once; one that was to follow is dropped, for
-    /// it never played.
+    /// Ends a play early. A committed table becomes active at once; a follower is dropped, because it never played.
     fn leave_play(&mut self, state: State) {
         self.state = state;
         match self.tables.swap() {
@@ -103,7 +103,7 @@ impl Brain {
         }
     }
 
-    /// Where the joints should be in this tick; `None`: no pulses.
+    /// Returns the set-point of this tick, rad; `None` if pulses are off.
     pub(super) fn advance_motion(&mut self, tick: u64, last: u64) -> Option<[f32; 2]> {
         let since_start = |since: u64| tick.saturating_sub(since) * u64::from(TICK_US);
         match self.state {
@@ -138,7 +138,7 @@ impl Brain {
         }
     }
 
-    /// The table's angles after `elapsed_us` more than `play` had come to; `before_us` in the tick before.
+    /// Angles of the table `elapsed_us` after the state `play`; `before_us` is the same for the previous tick.
     fn advance_play_by(&mut self, play: Progress, before_us: u64, elapsed_us: u64) -> [f32; 2] {
         let before = Progress {
             elapsed_us: play.elapsed_us.saturating_add(before_us),
@@ -149,7 +149,7 @@ impl Brain {
             ..play
         };
         let Some(table) = self.tables.active() else {
-            // A play without a table cannot begin.
+            // Defensive: a play without a table cannot begin.
             self.stop(StopCause::Requested);
             return self.commanded;
         };
@@ -189,7 +189,7 @@ impl Brain {
                 .tables
                 .active()
                 .map_or(NEUTRAL, |table| table.knot_angles(0));
-            // From where the way was checked, which is where this cycle ends.
+            // Starts at the end of this cycle, where the route was checked.
             let ramp = Ramp::soft(end, first, via_neutral, &self.limits);
             now.elapsed_us = now.period_us() * now.cycles_done();
             self.last_play = Some(now);
@@ -207,7 +207,7 @@ impl Brain {
         angles
     }
 
-    /// The first set-point of the table that follows: both start at one knot, so the play goes on within this very tick.
+    /// First set-point of the follower. Both tables share this knot, so the play continues within this tick.
     fn begin_follower(&mut self, done: Progress, next: Play) -> [f32; 2] {
         let cycles = match done.request.cycles {
             0 => done.cycles_done(),

@@ -1,32 +1,31 @@
-//! Bytes on their way out, frame by frame: a frame that finds no room is dropped whole and counted.
+//! Transmit buffer of a transport, with priorities. A frame that does not fit is dropped whole and counted.
 
 use heapless::Deque;
 use link_protocol::{Header, Kind, MAX_ENCODED, Signature, encode_body};
 
-/// Bytes that wait at most. Replies are few, telemetry yields to them.
+/// Capacity, bytes. Replies are few, and telemetry yields to them.
 const ROOM: usize = 640;
-/// Everything leaves so much room for answers to stops, four of them: whatever floods the robot, a stop that acted is
-/// acknowledged.
+/// Space reserved for four replies to stops, bytes: under any flood, a stop that acted is acknowledged.
 const STOPS_LEFT: usize = 4 * 28;
-/// Telemetry leaves so much room for replies.
+/// Space that telemetry leaves to replies, bytes.
 const TELEMETRY_LEAVES: usize = 2 * MAX_ENCODED;
-/// Bytes that may leave in one tick, and so a second: 5 kB/s.
+/// Bytes per tick: 5 kB/s.
 const BYTES_A_TICK: usize = 100;
-/// Telemetry may save up so much.
+/// Most unspent bytes that telemetry can accumulate.
 const MAX_SAVED: usize = 3 * MAX_ENCODED;
 
-/// What a frame is, and so how much room it leaves to others.
+/// Frame priority; determines the buffer space that a frame must leave free.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum What {
-    /// Takes the room that all else leaves.
+    /// Reply to a stop. It may use the reserved space.
     StopAnswer,
-    /// Any other answer.
+    /// Any other reply.
     Answer,
-    /// Sent where the link has room for it.
+    /// Sent if the link has capacity for it.
     Telemetry,
 }
 
-/// Bytes on their way out.
+/// Pending bytes of a transport.
 #[derive(Clone)]
 pub(crate) struct Outbox {
     bytes: Deque<u8, ROOM>,
@@ -43,17 +42,17 @@ impl Outbox {
         }
     }
 
-    /// Frames that found no room.
+    /// Number of dropped frames.
     pub(crate) fn dropped(&self) -> u32 {
         self.dropped
     }
 
-    /// A tick's worth of bytes may be spent.
+    /// Adds the byte budget of one tick.
     pub(crate) fn tick(&mut self) {
         self.saved = (self.saved + BYTES_A_TICK).min(MAX_SAVED);
     }
 
-    /// Sends a frame where there is room for what it is.
+    /// Queues a frame if its priority leaves enough space.
     pub(crate) fn send(
         &mut self,
         header: Header,
@@ -79,7 +78,7 @@ impl Outbox {
         }
     }
 
-    /// Takes bytes to be sent.
+    /// Removes bytes to be sent; returns their number.
     pub(crate) fn take(&mut self, out: &mut [u8]) -> usize {
         let mut taken = 0;
         for place in out {
@@ -92,7 +91,7 @@ impl Outbox {
         taken
     }
 
-    /// Nobody listens: what waits is old by the time somebody does.
+    /// Discards pending bytes: without a listener they would be outdated when one appears.
     pub(crate) fn clear(&mut self) {
         self.bytes.clear();
     }
@@ -130,12 +129,12 @@ mod tests {
         outbox.send(header(), Kind::Pong, &[], None, What::Telemetry);
     }
 
-    /// Takes all that waits; how many bytes it was.
+    /// Drains the buffer; returns the number of bytes.
     fn waiting(outbox: &mut Outbox) -> usize {
         outbox.take(&mut [0; 2 * ROOM])
     }
 
-    /// Sends until one finds no room.
+    /// Sends until a frame is dropped.
     fn fill(outbox: &mut Outbox, send: impl Fn(&mut Outbox)) {
         let full = (0..=ROOM).any(|_| {
             send(outbox);
@@ -165,7 +164,7 @@ mod tests {
             outbox.tick();
             telemetry(outbox);
         });
-        // Room that telemetry leaves, less what answers to stops need of it.
+        // Longest frame that telemetry's limit allows next to the reserve for stops.
         let longest = MAX_BODY - STOPS_LEFT / 2;
         for _ in 0..2 {
             answer(&mut outbox, &[0xA5; MAX_BODY][..longest]);
@@ -192,7 +191,7 @@ mod tests {
         let mut outbox = Outbox::new();
         telemetry(&mut outbox);
         assert_eq!(waiting(&mut outbox), 0, "nothing is saved yet");
-        // Shut up for a minute, then all at once: no more than a few frames come.
+        // After a minute without traffic, the burst is a few frames.
         (0..3_000).for_each(|_| outbox.tick());
         let mut burst = 0;
         for _ in 0..200 {
@@ -203,7 +202,7 @@ mod tests {
             (2 * MAX_ENCODED..=3 * MAX_ENCODED).contains(&burst),
             "{burst}"
         );
-        // From then on 5 kB/s: 100 bytes a tick.
+        // Then 5 kB/s: 100 bytes per tick.
         let mut sent = 0;
         for _ in 0..1_000 {
             outbox.tick();

@@ -1,6 +1,6 @@
-//! Storing of changed tables and settings, in bounded steps, while the robot is stopped: erase, pages, header (see
-//! [`crate::storage`] for why a power cut at any byte leaves the old table or the new one). Content that is stored already is
-//! not written, and a budget limits the rate of writes: flash bears about 100 000 erasures.
+//! Storing of changed tables and settings while the robot is stopped, in bounded steps: erase, pages, header.
+//! [`crate::storage`] explains why a power cut at any byte leaves the old table or the new one. Stored content is not written
+//! again, and a budget limits the rate of writes: flash bears about 100 000 erasures.
 
 use crate::storage::{MAX_SETTINGS, PAGE, SLOTS, Storage};
 use crate::{GaitTable, ShortStarts};
@@ -9,12 +9,12 @@ use link_protocol::{MAX_TABLE, crc32c};
 const MAGIC: u32 = u32::from_le_bytes(*b"GAIT");
 const FORMAT: u32 = 1;
 const HEADER: usize = 24;
-/// After a failure the storage is left alone for so long.
+/// Pause after a storage failure, µs.
 const RETRY_US: u64 = 1_000_000;
 
-/// Writes that may follow each other at once; see [`WRITE_EVERY_US`].
+/// Size of the write budget; see [`WRITE_EVERY_US`].
 const WRITES_AT_ONCE: u64 = 32;
-/// After those, one write in this time.
+/// Time after which the budget allows one more write, µs.
 const WRITE_EVERY_US: u64 = 120_000_000;
 
 /// Progress of storing.
@@ -24,23 +24,23 @@ pub(crate) struct Persist {
     newest: Option<(usize, u32)>,
     step: Step,
     settings_unsaved: bool,
-    /// The record of short starts to be stored.
+    /// Record of short starts to store.
     starts_unsaved: Option<ShortStarts>,
-    /// The last try to store them failed: a table goes first.
+    /// The last write of the settings failed, so a table has priority.
     settings_failed: bool,
     failed_us: Option<u64>,
-    /// What was stored could not be read, and nothing was stored since.
+    /// A stored record could not be read, and nothing was stored since.
     lost: bool,
     budget: WearBudget,
 }
 
-/// Token bucket of writes.
+/// Token bucket that limits flash writes.
 #[derive(Clone, Copy, Debug)]
 struct WearBudget {
-    /// Writes left at `since_us`.
+    /// Tokens at `since_us`.
     left: u64,
     since_us: u64,
-    /// Somebody at the robot has changed something: the next write is free.
+    /// A change with presence: the next write needs no token.
     granted: bool,
 }
 
@@ -94,12 +94,12 @@ impl Persist {
         }
     }
 
-    /// Somebody at the robot has changed something: it is stored whatever the budget.
+    /// Grants the next write regardless of the budget, after a change with presence.
     pub(crate) fn grant(&mut self) {
         self.budget.granted = true;
     }
 
-    /// The active table is another one now.
+    /// Marks the active table as changed.
     pub(crate) fn table_changed(&mut self) {
         self.step = Step::Erase;
     }
@@ -120,12 +120,12 @@ impl Persist {
         self.settings_unsaved || !self.table_stored()
     }
 
-    /// Nothing waits to be stored.
+    /// Returns true if nothing waits to be stored.
     pub(crate) fn all_stored(&self) -> bool {
         !self.unsaved() && self.starts_unsaved.is_none()
     }
 
-    /// There is something to store, the budget allows it, and no failure just now.
+    /// Returns true if something waits to be stored, the budget allows it and no failure is recent.
     pub(crate) fn wanted(&self, now_us: u64) -> bool {
         let costs = self.settings_unsaved || self.step == Step::Erase;
         !self.all_stored()
@@ -139,13 +139,13 @@ impl Persist {
         self.lost || self.failed_us.is_some()
     }
 
-    /// What was stored could not be read.
+    /// Records that a stored record could not be read.
     pub(crate) fn lost(&mut self) {
         self.lost = true;
     }
 
-    /// Reads both slots into both buffers; returns which holds the newest whole table, and what kept a slot from being
-    /// read: it does not keep the other.
+    /// Reads both slots into both buffers. Returns the slot of the newest valid table, and the read error of a slot if any; an
+    /// error in one slot does not affect the other.
     pub(crate) fn load<S: Storage>(
         &mut self,
         storage: &mut S,
@@ -168,7 +168,7 @@ impl Persist {
         (self.newest.map(|(slot, _)| slot), outcome)
     }
 
-    /// One step.
+    /// Does one storage step.
     pub(crate) fn step<S: Storage>(
         &mut self,
         now_us: u64,
@@ -179,10 +179,10 @@ impl Persist {
         let was_unsaved = self.unsaved();
         let result = self.try_step(now_us, storage, table, settings);
         self.failed_us = if result.is_err() { Some(now_us) } else { None };
-        // The record of starts says nothing of what was lost.
+        // The record of starts does not replace the lost one.
         self.lost &= result.is_err() || !was_unsaved;
         if result.is_err() && self.step != Step::Idle {
-            // Nothing is known of the slot now.
+            // The state of the slot is unknown after an error.
             self.step = Step::Erase;
         }
         result
@@ -213,7 +213,7 @@ impl Persist {
             self.step = Step::Idle;
             return Ok(());
         };
-        // Never the slot that holds the newest whole table.
+        // The slot with the newest valid table is never overwritten.
         let (slot, generation) = self.newest.map_or((0, 1), |(slot, newest)| {
             ((slot + 1) % SLOTS, newest.wrapping_add(1))
         });
@@ -261,7 +261,7 @@ fn padded(bytes: &[u8]) -> [u8; PAGE] {
     page
 }
 
-/// `magic | format | generation | len | CRC-32C of the table | CRC-32C of these`, u32 little-endian.
+/// Slot header, u32 little-endian: `magic | format | generation | len | CRC-32C of the table | CRC-32C of these`.
 fn header(table: &GaitTable, generation: u32) -> [u8; HEADER] {
     let mut bytes = [0; HEADER];
     let words = [
@@ -279,14 +279,14 @@ fn header(table: &GaitTable, generation: u32) -> [u8; HEADER] {
     bytes
 }
 
-/// The stored settings are these. A record that cannot be read is another one.
+/// Returns true if the stored settings equal these. An unreadable record counts as different.
 fn holds_settings<S: Storage>(storage: &mut S, settings: &[u8]) -> bool {
     let mut bytes = [0; MAX_SETTINGS];
     let stored = storage.load_settings(&mut bytes);
     matches!(stored, Ok(Some(len)) if bytes.get(..len) == Some(settings))
 }
 
-/// The slot holds this table.
+/// Returns true if the slot holds this table.
 fn holds_table<S: Storage>(storage: &mut S, slot: usize, table: &GaitTable) -> bool {
     let mut head = [0; HEADER];
     let generation = 0..12;
@@ -303,7 +303,7 @@ fn holds_table<S: Storage>(storage: &mut S, slot: usize, table: &GaitTable) -> b
     })
 }
 
-/// Reads a slot; its generation where it holds a whole table.
+/// Reads a slot. Returns its generation if it holds a valid table.
 fn read_slot<S: Storage>(
     storage: &mut S,
     slot: usize,
@@ -335,7 +335,7 @@ mod tests {
         GaitTable::from_fn(100, shape).unwrap_or_else(|_| GaitTable::empty())
     }
 
-    /// Counts erasures, and writes of the settings.
+    /// Storage that counts erasures, and writes of the settings.
     struct Counted {
         flash: MemoryStorage,
         writes: u64,
@@ -349,7 +349,7 @@ mod tests {
             }
         }
 
-        /// Stores all that may be stored now; returns the number of writes.
+        /// Stores everything that the budget allows; returns the number of writes.
         fn serve(
             &mut self,
             persist: &mut Persist,
@@ -412,7 +412,7 @@ mod tests {
         }
     }
 
-    /// Begin and Commit of the stored table, and the settings in force, seven times a second for an hour.
+    /// Repeats Begin and Commit of the stored table, and the present settings, seven times a second for an hour.
     #[test]
     fn equal_content_is_not_written() {
         let (mut flash, mut persist) = (Counted::erased(), Persist::new());
@@ -426,13 +426,13 @@ mod tests {
             let writes = flash.serve(&mut persist, again * 142_857, &table, &[7]);
             assert_eq!((writes, persist.all_stored()), (0, true));
         }
-        // Another table of the same length is another one.
+        // A table of equal length but different content is written.
         persist.table_changed();
         let other = self::table(0.9);
         assert_eq!(flash.serve(&mut persist, 3_600_000_000, &other, &[7]), 1);
     }
 
-    /// The same with content that changes each time: the budget of `docs/reference/promises.md`.
+    /// Content that changes each time is written at the budget of `docs/reference/promises.md`.
     #[test]
     fn changes_are_written_at_the_rate_of_the_budget() {
         let (mut flash, mut persist) = (Counted::erased(), Persist::new());
@@ -444,7 +444,7 @@ mod tests {
             writes += flash.serve(&mut persist, second * 1_000_000, &table, &settings);
         }
         assert_eq!(writes, WRITES_AT_ONCE + day_us / WRITE_EVERY_US - 1);
-        // Somebody at the robot is not kept waiting.
+        // A change with presence is stored at once.
         persist.settings_changed();
         assert_eq!(flash.serve(&mut persist, day_us, &table, &[1]), 1);
         persist.settings_changed();
@@ -459,7 +459,7 @@ mod tests {
         let mut flash = MemoryStorage::erased();
         let mut persist = Persist::new();
         persist.lost();
-        // The record of starts says nothing of settings or table.
+        // The record of starts does not replace lost settings or tables.
         persist.starts_changed(ShortStarts { runs: 1 });
         let Ok(()) = persist.step(0, &mut flash, None, &[7]);
         assert!(persist.all_stored() && persist.failed());

@@ -1,4 +1,4 @@
-//! What the brain tells: status, telemetry, LED.
+//! Status, telemetry and LED of the brain.
 
 use super::outbox::What;
 use super::state::State;
@@ -10,11 +10,11 @@ use link_protocol::{
     Telemetry,
 };
 
-/// Telemetry goes out every so many ticks: 25 times a second.
+/// Ticks between telemetry frames: 25 frames per second.
 const TELEMETRY_TICKS: u64 = 2;
-/// Bytes of chunks that may be in flight.
+/// Most bytes of chunks in flight.
 const UPLOAD_WINDOW: u16 = 1024;
-/// The LED is lit so long at a cycle's start.
+/// Duration of the LED flash at a cycle's start, µs.
 const FLASH_US: u32 = 100_000;
 
 impl Brain {
@@ -62,7 +62,7 @@ impl Brain {
         }
     }
 
-    /// Table and settings as a play must name them; without a table its checksum is 0.
+    /// Table and settings that a play must match. The table's checksum is 0 without a table.
     pub fn held(&self) -> Checked {
         Checked {
             table_crc32: self.tables.active_crc32().unwrap_or_default(),
@@ -81,7 +81,7 @@ impl Brain {
         })
     }
 
-    /// What was received, refused and dropped since the start.
+    /// Counts of received, refused and dropped frames since the start.
     pub fn counters(&self) -> Counters {
         Counters {
             frames: self.frames(),
@@ -93,7 +93,7 @@ impl Brain {
         }
     }
 
-    /// What came over both transports.
+    /// Decoder counters, summed over both transports.
     fn frames(&self) -> DecodeCounters {
         let [uart, usb] = [0, 1].map(|transport: usize| self.decoders[transport].counters());
         DecodeCounters {
@@ -124,7 +124,7 @@ impl Brain {
             .with(Flags::SHORT_STARTS, self.resets.locked_by_starts())
     }
 
-    /// Cycles done, cycles asked for, fraction of the cycle in 2⁻¹⁶.
+    /// Finished cycles, requested cycles, and fraction of the present cycle in 2⁻¹⁶.
     fn cycle(&self) -> (u32, u32, u16) {
         self.last_play.map_or((0, 0, 0), |play| {
             let phase = (u64::from(play.in_cycle_us()) << 16) / play.period_us();
@@ -137,7 +137,7 @@ impl Brain {
             .map(|angle| libm::roundf(angle / ANGLE_UNIT_RAD) as i16)
     }
 
-    /// Sends telemetry where it is due and somebody listens.
+    /// Sends telemetry if it is due and a host listens.
     pub(super) fn send_telemetry(&mut self, now_us: u64) {
         let Some(transport) = self.session.transport() else {
             return;
@@ -175,9 +175,9 @@ impl Brain {
                 .is_some_and(|play| play.in_cycle_us() < FLASH_US)
     }
 
-    /// The LED: cycle flashes while playing; else on while pulses are on, dark for a moment each second while the bench window
-    /// is open, fast in e-stop, two blinks a second with a low battery, three blinks every two seconds while arming is locked,
-    /// one blink every two seconds when stopped.
+    /// LED pattern. Playing: flash per cycle. Other powered states: on. While the bench window is open: dark for a moment each
+    /// second. E-stop: fast. Low battery: two blinks a second. Arming locked: three blinks every two seconds. Stopped: one
+    /// blink every two seconds.
     pub(super) fn led(&self, now_us: u64) -> bool {
         let ms = self.tick * u64::from(TICK_US) / 1000;
         match self.state.name() {

@@ -9,7 +9,7 @@ use link_protocol::{
     PulseRange, Received, Refusal, Reply, Request, SettingsHeld, StopCause, settings_crc32,
 };
 
-/// What a frame asks to be answered to: its header, its way, and whether it is of the open session.
+/// Reply address of a frame: its header, its transport, and whether it belongs to the open session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Asked {
     pub(super) header: Header,
@@ -40,7 +40,7 @@ impl Brain {
                     self.pong(now_us, asked, heartbeat.host_us);
                 }
             }
-            // What only robots send is another robot, or an echo; an unknown kind asks for nothing known.
+            // A message that only robots send comes from another robot or is an echo. An unknown kind gets no reply.
             Ok(
                 Message::HelloReply(_)
                 | Message::Reply(_)
@@ -49,7 +49,7 @@ impl Brain {
             )
             | Err(BodyError::UnknownKind(_)) => {}
             Err(BodyError::Version(_)) => {
-                // In ours: it may be one of those that the host understands.
+                // The reply uses our version, which the host may understand.
                 let header = Header {
                     version: PROTOCOL_CURRENT,
                     ..header
@@ -71,7 +71,7 @@ impl Brain {
     fn greet(&mut self, asked: Asked, hello: &Hello) {
         let understood =
             hello.protocol_min <= PROTOCOL_CURRENT && hello.protocol_current >= PROTOCOL_MIN;
-        // Session 0: none. The reply says why.
+        // Session 0 stands for a refused greeting; the reply states the reason.
         let session = if understood {
             self.session.greet(
                 asked.transport,
@@ -86,11 +86,11 @@ impl Brain {
             session,
             ..asked.header
         };
-        // Never signed: it comes before there is anything to sign with.
+        // The reply to a greeting is never signed: the session key does not exist yet.
         self.send(asked.transport, header, &reply, false, What::Answer);
     }
 
-    /// Counts a frame that is of no session of ours; true where it is of ours.
+    /// Counts a frame of another session. Returns true if the frame belongs to the open session.
     fn count_stale(&mut self, asked: Asked) -> bool {
         if !asked.ours {
             count(&mut self.counted.stale);
@@ -114,7 +114,7 @@ impl Brain {
         if needs.signature && !self.count_stale(asked) {
             return self.turn_away(asked, request, admission);
         }
-        // These act whatever else holds. If their number is the next one, it takes its place in the order.
+        // Stops act unconditionally. If the sequence number is the next one, they take part in the order of requests.
         if request.is_stop() {
             if *request == Request::Stop {
                 self.stop(StopCause::Requested);
@@ -126,11 +126,11 @@ impl Brain {
                 self.session.keep(asked.header.sequence, &Reply::Done);
             }
             count(&mut self.counted.acted);
-            // Answered to whoever sent it; only ours has a place in the order, where its answer is kept.
+            // Every sender gets a reply. Only a request of the open session takes a sequence number and has its reply stored.
             return self.answer(asked, Reply::Done, What::StopAnswer);
         }
         if let Request::Chunk(chunk) = request {
-            // Acts by its offset, whatever the order, and keeps no reply.
+            // A chunk acts by its offset, independent of the sequence number, and its reply is not stored.
             let taken = self
                 .authorize(now_us, asked, needs)
                 .and_then(|()| self.tables.chunk(chunk));
@@ -175,14 +175,14 @@ impl Brain {
         }
     }
 
-    /// Enforces what the authority table demands of a request of the open session, before it is looked at further. The
-    /// wear budget is enforced where the flash is written ([`super::persist`]).
+    /// Enforces the authority table for a request of the open session, before the request is evaluated. [`super::persist`]
+    /// enforces the wear budget.
     fn authorize(&self, now_us: u64, asked: Asked, needs: Needs) -> Result<(), Refusal> {
         let state = self.state.name();
         if !needs.state.includes(state) {
             return Err(Refusal::WrongState(state));
         }
-        // Bytes that a buffer kept of a host that is gone do nothing.
+        // Buffered bytes of a dead host have no effect.
         if needs.freshness && !self.session.attended(now_us) {
             return Err(Refusal::NotFresh);
         }
@@ -192,12 +192,12 @@ impl Brain {
         Ok(())
     }
 
-    /// Somebody is at the robot: at the other end of its cable, or within the bench window.
+    /// Returns true if a person is at the robot: the request came over USB, or the bench window is open.
     fn is_present(&self, now_us: u64, asked: Asked) -> bool {
         asked.transport == Transport::Usb || self.bench.open(now_us)
     }
 
-    /// The settings with which a new one is compared.
+    /// Settings in force, with which a request is compared.
     pub(super) fn settings_held(&self) -> SettingsHeld {
         SettingsHeld {
             configuration: self.settings.configuration,
@@ -209,7 +209,7 @@ impl Brain {
         }
     }
 
-    /// Hash of the settings that a play is checked for.
+    /// Hash of the settings that a play must match.
     pub(super) fn settings_crc32(&self) -> u32 {
         settings_crc32(
             &self.settings.configuration,
@@ -222,7 +222,7 @@ impl Brain {
         [0, 1].map(|joint| self.settings.window(joint, &self.firmware_limits))
     }
 
-    /// The stored reply to a repeat.
+    /// Sends the stored reply to a repeated request.
     fn reply_again(&mut self, asked: Asked) {
         let mut body = [0; MAX_BODY];
         let kept = self.session.kept().and_then(|kept| {
@@ -239,12 +239,12 @@ impl Brain {
         }
     }
 
-    /// Refuses a request that is not of the open session. No reply tells the number of that one.
+    /// Refuses a request that is not of the open session. The reply does not reveal the number of that session.
     fn turn_away(&mut self, asked: Asked, request: &Request, admission: Admission) {
         let refusal = match admission {
-            // A frame that came twice was answered once: a second answer would only undo it.
+            // A byte-exact copy was answered once; a second reply would contradict the first.
             Admission::Ours | Admission::Replayed => return,
-            // The request that closed the session, again: its reply was lost.
+            // Repeat of the request that closed the session, because its reply was lost.
             Admission::Closed if self.closed_by(asked, request) => {
                 count(&mut self.counted.replayed);
                 return self.reply_again(asked);
@@ -261,7 +261,7 @@ impl Brain {
             && self.session.is_last(asked.header.sequence)
     }
 
-    /// The answer to a request, kept for its repeats.
+    /// Sends the reply to a request and stores it for repeats.
     pub(super) fn finish(&mut self, asked: Asked, reply: Reply) {
         if matches!(reply, Reply::Refused(_)) {
             count(&mut self.counted.refused);
@@ -281,13 +281,13 @@ impl Brain {
         self.answer(asked, reply, What::Answer);
     }
 
-    /// Under session, number and version of what it answers, for whoever asked reads that version.
+    /// Sends a reply under session, number and version of its request, because the sender reads that version.
     fn answer(&mut self, asked: Asked, reply: Reply, what: What) {
         let message = Message::Reply(reply);
         self.send(asked.transport, asked.header, &message, asked.ours, what);
     }
 
-    /// Sends a message; signed where it is `ours` and the open session asks for it.
+    /// Sends a message, signed if it is `ours` and the open session requires it.
     pub(super) fn send(
         &mut self,
         to: Transport,

@@ -1,35 +1,36 @@
-//! What outlives a reset: a latched e-stop and how long ago the last resets were, in one word that the shell keeps in a
-//! register which a reset spares and a power cut clears (promises R6 and R8).
+//! State that survives a reset: the e-stop latch and the ages of the last resets, packed into one word. The shell keeps the
+//! word in a register that a reset preserves and a power cut clears (promises R6 and R8).
 //!
 //! ```text
 //!  31   24 23       17 16           10 9    3      2        1       0
 //! | 0xA5  | last, s   | before it, s  | free | by starts | locked | e-stop |
 //! ```
-//! Seconds since the last reset that was a fault, and since the one before it; 127: none, or longer ago.
+//! Ages of the last two faulty resets, s; 127 means no such reset, or an older one.
 
 use link_protocol::ResetReason;
 
 const MAGIC: u32 = 0xA5;
 const NONE: u32 = 127;
-/// Three resets within this many seconds lock arming; so long the robot must be up before that may be cleared.
+/// Window of the reset lock, s. Three resets within it lock arming, and the robot must be up for as long before the lock may be
+/// cleared.
 const WINDOW_S: u32 = 60;
 
-/// What outlives a reset.
+/// State that survives a reset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Resets {
     /// The e-stop is latched.
     pub(crate) estop: bool,
-    /// Arming is refused.
+    /// Arming is locked.
     locked: bool,
-    /// For short starts, and not (only) for resets.
+    /// The lock has its cause in short starts, not (only) in resets.
     by_starts: bool,
-    /// Ages of the last two faulty resets at the start, s.
+    /// Ages of the last two faulty resets when this run started, s.
     ages: [u32; 2],
     uptime_s: u32,
 }
 
 impl Resets {
-    /// Reads the word that was kept, at a start for this reason.
+    /// Decodes the stored word at a start with this cause.
     pub(crate) fn at_start(kept: u32, reason: ResetReason) -> Self {
         if reason == ResetReason::PowerOn || kept >> 24 != MAGIC {
             let fault = matches!(reason, ResetReason::Watchdog | ResetReason::Crash);
@@ -62,38 +63,38 @@ impl Resets {
         }
     }
 
-    /// Takes the time since the start.
+    /// Updates the time since the start.
     pub(crate) fn up_for(&mut self, now_us: u64) {
         self.uptime_s = (now_us / 1_000_000).min(u64::from(u16::MAX)) as u32;
     }
 
-    /// Seconds until [`Self::clear`] may be asked for; `None` where nothing is locked.
+    /// Seconds until [`Self::clear`] is accepted. Returns `None` if arming is not locked.
     pub(crate) fn wait_s(&self) -> Option<u16> {
         self.locked
             .then(|| WINDOW_S.saturating_sub(self.uptime_s) as u16)
     }
 
-    /// So many starts in a row came too quickly: that locks as three resets do.
+    /// Locks arming after too many short starts.
     pub(crate) fn lock(&mut self) {
         (self.locked, self.by_starts) = (true, true);
     }
 
-    /// Locked for that.
+    /// Arming is locked because of repeated short starts.
     pub(crate) fn locked_by_starts(&self) -> bool {
         self.locked && self.by_starts
     }
 
-    /// Up for long enough that this run was not a short one.
+    /// Returns true if the robot has been up long enough that this run is not a short one.
     pub(crate) fn lasted(&self) -> bool {
         self.uptime_s >= WINDOW_S
     }
 
-    /// Unlocks.
+    /// Clears the lock.
     pub(crate) fn clear(&mut self) {
         (self.locked, self.by_starts) = (false, false);
     }
 
-    /// The word to keep.
+    /// Encodes the word to store.
     pub(crate) fn word(&self) -> u32 {
         let age = |at_start: u32| {
             if at_start == NONE {
@@ -136,7 +137,7 @@ mod tests {
         assert_eq!(third.wait_s(), Some(0));
         third.clear();
         assert_eq!(third.wait_s(), None);
-        // One second later it would not have been.
+        // One second later the third reset is outside the window.
         assert_eq!(Resets::at_start(run(second, 32), Watchdog).wait_s(), None);
     }
 

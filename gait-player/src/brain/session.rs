@@ -1,14 +1,14 @@
-//! The session: one at a time, each request at most once, in order.
+//! Session with a host: one at a time; each request acts at most once, in order.
 
 use super::Transport;
 use heapless::Vec;
 use link_protocol::{Binding, Header, Heartbeat, Key, Kind, MAX_BODY, Reply, Seal, Signature};
 
-/// A link is silent when no fresh keep-alive of its session came for this long. With the tick that finds out, the ramp
-/// starts 480 ms after the last one: 500 ms are promised.
+/// Lease: a session is silent if no fresh keep-alive arrived for this long, µs. One tick later, at most 480 ms after the last
+/// keep-alive, the ramp starts; 500 ms are promised.
 pub(crate) const LEASE_US: u64 = 460_000;
-/// A keep-alive is fresh where its host had heard the robot so short a time ago. Legal lines stay below: 200 ms each way,
-/// 200 ms for a lump of 230 bytes to fill with telemetry, 100 ms until the host's next keep-alive (`docs/security.md`).
+/// Largest age of the robot's last frame at the host for which a keep-alive is fresh, µs. Legal links stay below it: 200 ms
+/// each way, 200 ms to fill a lump of 230 bytes with telemetry, 100 ms until the host's next keep-alive (`docs/security.md`).
 pub(crate) const FRESH_US: u64 = 1_000_000;
 
 /// The open session.
@@ -16,72 +16,72 @@ pub(crate) const FRESH_US: u64 = 1_000_000;
 pub(crate) struct Session {
     open: Option<Open>,
     next: u16,
-    /// The numbers have begun anew: the next session is of another boot nonce.
+    /// Session numbers have wrapped around; the next session gets another boot nonce.
     anew: bool,
     boot_nonce: u32,
-    /// When a fresh keep-alive last came.
+    /// Time of the last fresh keep-alive.
     pub(super) fed_us: Option<u64>,
 }
 
 #[derive(Clone)]
 struct Open {
     number: u16,
-    /// Of the greeting: what comes otherwise is not of this session.
+    /// Transport of the greeting. Frames of the other transport are not of this session.
     transport: Transport,
     host_nonce: u32,
-    /// The latest time of the robot's clock that the host has heard, by its keep-alives, µs.
+    /// Latest robot time that the host has echoed in a keep-alive, µs.
     echoed_us: u64,
     last: Option<u16>,
-    /// Body of the reply to `last`; empty while there is none yet.
+    /// Body of the reply to `last`; empty before the reply exists.
     reply: Vec<u8, MAX_BODY>,
     guard: Option<Guard>,
-    /// A key was set in it: it does nothing more than repeat the reply to that.
+    /// A key was set in this session. It only repeats the reply to that request.
     closed: bool,
 }
 
-/// Lets in only what was signed with the key for this session, each frame once and none after a later one.
+/// Signature check of a session: admits only frames signed with its key, each once and in increasing order.
 #[derive(Clone)]
 struct Guard {
     seal: Seal,
-    /// Counter of the last frame let in.
+    /// Counter of the last admitted frame.
     last: u64,
-    /// Counter of the last frame that the robot signed.
+    /// Counter of the last frame signed by the robot.
     signed: u64,
 }
 
-/// Standing of a frame with the open session.
+/// Relation of a frame to the open session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Admission {
-    /// Of the open session and, where there is a key, signed with it.
+    /// Frame of the open session, signed if there is a key.
     Ours,
-    /// Of no open session, or by another way than its greeting.
+    /// Frame of no open session, or over another transport than its greeting.
     Foreign,
-    /// Of the session that the setting of a key closed; signed as that session requires.
+    /// Frame of the session that was closed by setting a key, signed as that session requires.
     Closed,
-    /// Of the open session, but not signed although there is a key.
+    /// Frame of the open session without the required signature.
     Unsigned,
     /// Signed with another key, or for another session of the same number.
     WrongKey,
-    /// Signed with the key, but not later than what was let in before: an echo, or an adversary's copy.
+    /// Signed with the key, but not newer than the last admitted frame: an echo or a recorded copy.
     Replayed,
 }
 
-/// How a request's number stands to those before it.
+/// Position of a request's sequence number in the order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Order {
-    /// It may act.
+    /// Next number: the request may act.
     Next,
-    /// It is the last one again.
+    /// Repeat of the last request.
     Repeat,
-    /// A later one acted already.
+    /// A later request has acted already.
     Superseded {
-        /// That one.
+        /// Number of the last request that acted.
         last: u16,
     },
 }
 
 impl Session {
-    /// No session is open; the first will be `seed` or the one after.
+    /// Returns a state without an open session. The first session is `seed` or the next number.
     pub(crate) fn new(seed: u16, boot_nonce: u32) -> Self {
         Self {
             open: None,
@@ -101,7 +101,7 @@ impl Session {
         self.open.as_ref().filter(|open| !open.closed)
     }
 
-    /// Closes the session: a key holds from here on. The reply to the request that set it can still be repeated.
+    /// Closes the session because a key is required from now on. The reply to the request that set it can still be repeated.
     pub(crate) fn close(&mut self) {
         if let Some(open) = &mut self.open {
             open.closed = true;
@@ -109,15 +109,15 @@ impl Session {
         self.fed_us = None;
     }
 
-    /// The request of this number is the last one that acted.
+    /// Returns true if this is the number of the last request that acted.
     pub(crate) fn is_last(&self, sequence: u16) -> bool {
         self.open
             .as_ref()
             .is_some_and(|open| open.last == Some(sequence))
     }
 
-    /// What a host is told to know this start by. It changes too when the numbers of sessions begin anew, so that no two
-    /// sessions of a start have both in common.
+    /// Nonce that identifies this start to hosts. It changes if the session numbers wrap around, so no two sessions of a start
+    /// share number and nonce.
     pub(crate) fn boot_nonce(&self) -> u32 {
         self.boot_nonce
     }
@@ -127,7 +127,7 @@ impl Session {
         self.open().map(|open| open.transport)
     }
 
-    /// Opens a session for a greeting, or finds it open already. The key stands for as long as the session.
+    /// Opens a session for a greeting, or returns the one that it opened before. The key is fixed for the session.
     pub(crate) fn greet(
         &mut self,
         transport: Transport,
@@ -141,7 +141,7 @@ impl Session {
         }
         let number = self.next;
         if core::mem::take(&mut self.anew) {
-            // The golden ratio's odd multiple: comes back to none before 2³² times.
+            // Odd multiple from the golden ratio: repeats only after 2³² steps.
             self.boot_nonce = self.boot_nonce.wrapping_add(0x9E37_79B9);
         }
         let binding = Binding {
@@ -170,7 +170,7 @@ impl Session {
         number
     }
 
-    /// What a whole frame of this session number may do. `signed` are the bytes before its tag.
+    /// Classifies a complete frame of this session number. `signed` are the bytes before its tag.
     pub(crate) fn admit(
         &mut self,
         transport: Transport,
@@ -203,7 +203,7 @@ impl Session {
         }
     }
 
-    /// The signature of a frame to the host of the open session; `None` if it has no key.
+    /// Signs a frame to the host of the open session. Returns `None` if the session has no key.
     pub(crate) fn sign(&mut self, header: Header, kind: Kind, body: &[u8]) -> Option<Signature> {
         let open = self.open.as_mut()?;
         let guard = open.guard.as_mut()?;
@@ -214,8 +214,8 @@ impl Session {
         Some(guard.seal.sign(header, kind, body, guard.signed))
     }
 
-    /// A keep-alive of the open session: it feeds the lease where it is fresh. The time it echoes must be later than any
-    /// before, so that none counts twice, and may not lie ahead.
+    /// Renews the lease with a fresh keep-alive of the open session. Its echoed time must be later than any before, so that
+    /// none counts twice, and not in the future.
     pub(crate) fn feed(&mut self, now_us: u64, heartbeat: Heartbeat) {
         let Some(open) = self.open.as_mut().filter(|open| !open.closed) else {
             return;
@@ -227,18 +227,18 @@ impl Session {
         }
     }
 
-    /// Nothing fresh was heard within the lease.
+    /// Returns true if the lease has run out.
     pub(crate) fn silent(&self, now_us: u64) -> bool {
         self.fed_us
             .is_none_or(|fed| now_us.saturating_sub(fed) > LEASE_US)
     }
 
-    /// The host of the open session is there: what fed the lease within it came from this host, not from one before.
+    /// Returns true if the host of the open session is alive: the last fresh keep-alive came within this session.
     pub(crate) fn attended(&self, now_us: u64) -> bool {
         self.open().is_some_and(|open| open.echoed_us > 0) && !self.silent(now_us)
     }
 
-    /// Where this number stands; [`Order::Next`] makes it the last one, without a reply yet.
+    /// Classifies a sequence number. [`Order::Next`] makes it the last one, without a reply yet.
     pub(crate) fn order(&mut self, sequence: u16) -> Order {
         let Some(open) = &mut self.open else {
             return Order::Superseded { last: 0 };
@@ -255,7 +255,7 @@ impl Session {
         Order::Next
     }
 
-    /// Keeps the body of the reply to a request, for its repeats. A later request's place is not taken.
+    /// Stores the body of a reply for repeats, unless a later request has replaced it.
     pub(crate) fn keep(&mut self, sequence: u16, reply: &Reply) {
         let Some(open) = &mut self.open else { return };
         if open.last == Some(sequence) {
@@ -265,7 +265,7 @@ impl Session {
         }
     }
 
-    /// The kept body of the reply to the last request; `None` while it has none yet.
+    /// Stored reply body of the last request. Returns `None` before that reply exists.
     pub(crate) fn kept(&self) -> Option<&[u8]> {
         self.open
             .as_ref()
@@ -369,7 +369,7 @@ mod tests {
         let admission = session.admit(Transport::Uart, 5, &[], None);
         assert_eq!(admission, Admission::Closed);
         assert!(session.is_last(9) && !session.is_last(10) && session.kept().is_some());
-        // The same greeting opens a session of its own now.
+        // After the key was set, the same greeting opens another session.
         assert_eq!(session.greet(Transport::Uart, 1, None), 6);
     }
 
@@ -387,10 +387,10 @@ mod tests {
             session.fed_us.is_some()
         };
         let now = 10 * FRESH_US;
-        // Nothing heard yet, ahead of the robot's clock, too old.
+        // Nothing received yet, later than the robot's clock, too old.
         assert!(!fed(now, 0) && !fed(now, now + 1) && !fed(now, now - FRESH_US - 1));
         assert!(fed(now, now - FRESH_US));
-        // Recorded, or overtaken.
+        // Repeated, or overtaken.
         assert!(!fed(now, now - FRESH_US) && !fed(now - 1, now - FRESH_US));
         assert!(fed(now, now) && !fed(now + 1, now));
         session.fed_us = Some(now);
@@ -408,7 +408,7 @@ mod tests {
         assert!(!session.attended(10));
         session.feed(10, beat(5));
         assert!(session.attended(10 + LEASE_US) && !session.attended(11 + LEASE_US));
-        // Another host: the motion's lease runs on, and still it says for itself that it is there.
+        // After another host's greeting the motion's lease continues, but the new host must prove that it is alive.
         session.greet(Transport::Usb, 2, None);
         assert!(!session.silent(11) && !session.attended(11));
         session.feed(11, beat(9));
@@ -452,7 +452,7 @@ mod tests {
         );
     }
 
-    /// 65 535 greetings lead back to the same number; with the old boot nonce, recorded frames would count again.
+    /// After 65 535 greetings the number repeats. With the old boot nonce, recorded frames would be valid again.
     #[test]
     fn no_number_comes_twice_with_the_same_boot_nonce() {
         let mut session = Session::new(0xFFF0, 7);
@@ -460,7 +460,7 @@ mod tests {
         for nonce in 0..200_000 {
             let number = session.greet(Transport::Uart, nonce, None);
             assert!(seen.insert((session.boot_nonce(), number)));
-            // The same greeting again is told the same.
+            // A repeated greeting returns the same session.
             assert_eq!(session.greet(Transport::Uart, nonce, None), number);
             assert!(seen.contains(&(session.boot_nonce(), number)));
         }

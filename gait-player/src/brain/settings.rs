@@ -1,5 +1,5 @@
-//! Settings that outlive a power cut: configuration, servo maps, pulse ranges and key. Every value is checked where it
-//! enters, from the wire as from storage.
+//! Persistent settings: configuration, servo maps, pulse ranges and key. Every value is checked on entry, from the link and
+//! from storage.
 
 use crate::storage::MAX_SETTINGS;
 use crate::{Limits, servo::ServoMap};
@@ -11,35 +11,35 @@ use swimmer_model::{Links, Model, Swimmer};
 
 /// Largest trim, 1e-4 rad.
 const MAX_TRIM: i16 = 5_000;
-/// Longest way to neutral, ms.
+/// Longest ramp to neutral, ms.
 const MAX_TO_NEUTRAL_MS: f32 = 1_000.0;
-/// Smallest angle that a servo's end stops must leave to both sides, rad.
+/// Smallest angle that a servo's end stops must leave on both sides, rad.
 const MIN_REACH: f32 = 1e-2;
 
-/// The stored record.
+/// Record of the settings.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Settings {
     pub(crate) configuration: Configuration,
     pub(crate) servos: [ServoSettings; 2],
-    /// The maps as they were last set with presence, or as built.
+    /// Servo maps as last set with presence, or as built.
     pub(crate) at_bench: [ServoSettings; 2],
-    /// `None`: the firmware's window.
+    /// Pulse ranges of the servos. `None` stands for the firmware's window.
     pub(crate) ranges: [Option<PulseRange>; 2],
     pub(crate) key: Option<Key>,
 }
 
 impl Settings {
-    /// The record for storage.
+    /// Encodes the record for storage.
     pub(crate) fn encode<'a>(&self, bytes: &'a mut [u8; MAX_SETTINGS]) -> Option<&'a mut [u8]> {
         postcard::to_slice(self, bytes).ok()
     }
 
-    /// The key of a record, whatever else it holds: limits that have changed must not open the robot.
+    /// Key of a stored record, even if the rest is invalid: changed limits must not remove the protection.
     pub(crate) fn stored_key(bytes: &[u8]) -> Option<Key> {
         postcard::from_bytes::<Self>(bytes).ok()?.key
     }
 
-    /// Reads a record; `None` if it is invalid under these limits.
+    /// Decodes a record. Returns `None` if it is invalid under these limits.
     pub(crate) fn decode(bytes: &[u8], limits: &Limits) -> Option<Self> {
         let (settings, rest) = postcard::take_from_bytes::<Self>(bytes).ok()?;
         check_configuration(&settings.configuration, limits).ok()?;
@@ -53,14 +53,14 @@ impl Settings {
         rest.is_empty().then_some(settings)
     }
 
-    /// A request acted while somebody was at the robot: its servo map is the one that later ones are measured from.
+    /// Records the servo maps after a request with presence; later changes are measured from them.
     pub(crate) fn note_bench(&mut self, request: &Request) {
         if let Request::SetServo { joint, .. } | Request::Trim { joint, .. } = request {
             self.at_bench[joint.index()] = self.servos[joint.index()];
         }
     }
 
-    /// The window of a servo's pulses, ns.
+    /// Allowed pulses of a servo, ns.
     pub(crate) fn window(&self, joint: usize, limits: &Limits) -> PulseRange {
         self.ranges[joint].unwrap_or(PulseRange {
             shortest_ns: limits.pulse_min_ns,
@@ -68,7 +68,7 @@ impl Settings {
         })
     }
 
-    /// The largest angle that the servos' end stops leave to both sides, rad; none where none are set.
+    /// Largest angle that the servos' end stops leave on both sides, rad; infinite without end stops.
     pub(crate) fn reach(&self, limits: &Limits) -> Result<f32, Refusal> {
         let (maps, mut reach) = (self.maps(), f32::INFINITY);
         for (joint, range) in self.ranges.iter().enumerate() {
@@ -103,13 +103,13 @@ impl Settings {
     }
 }
 
-/// Checks a configuration and prepares its model.
+/// Validates a configuration and prepares its model.
 pub(crate) fn check_configuration(
     wanted: &Configuration,
     limits: &Limits,
 ) -> Result<Model<f32>, Refusal> {
     let within = |field: u8, value: f32, low: f32, high: f32| {
-        // A NaN is in no range.
+        // The range check rejects NaN.
         if (low..=high).contains(&value) {
             Ok(())
         } else {
@@ -153,11 +153,11 @@ pub(crate) fn check_configuration(
         tangential_drag,
         sphere_radius: wanted.sphere_radius_m,
     };
-    // What is left to be wrong is a half thickness above a link's length.
+    // The remaining error is a half thickness that exceeds a link's length.
     Model::new(&swimmer).map_err(|_| Refusal::BadValue { field: 4 })
 }
 
-/// Checks a servo's map.
+/// Validates a servo map.
 pub(crate) fn check_servo(wanted: &ServoSettings, limits: &Limits) -> Result<(), Refusal> {
     let bad = |field| Err(Refusal::BadValue { field });
     if !limits.allows_centre(wanted.centre_ns) {
@@ -169,7 +169,7 @@ pub(crate) fn check_servo(wanted: &ServoSettings, limits: &Limits) -> Result<(),
     check_trim(wanted.trim).or(bad(3))
 }
 
-/// Checks a trim.
+/// Validates a trim.
 pub(crate) fn check_trim(trim: i16) -> Result<(), Refusal> {
     if (-MAX_TRIM..=MAX_TRIM).contains(&trim) {
         Ok(())
@@ -217,7 +217,7 @@ mod tests {
             let record = settings.encode(&mut bytes).unwrap();
             prop_assert_eq!(Settings::decode(record, &limits), Some(settings));
             prop_assert_eq!(Settings::stored_key(record), settings.key);
-            // One byte less or more is no record.
+            // A record with a missing or an extra byte is invalid.
             let len = record.len();
             prop_assert_eq!(Settings::decode(&bytes[..len - 1], &limits), None);
             prop_assert_eq!(Settings::decode(&bytes[..=len], &limits), None);

@@ -3,42 +3,42 @@
 use crate::ramp::Ramp;
 use link_protocol::{Play, StateName};
 
-/// State of the brain. Ticks are counted on the servo period's grid since the start.
+/// State of the brain. Times are ticks since the start, on the grid of the servo period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum State {
     /// Pulses off.
     Stopped,
-    /// Pulses off, latched.
+    /// Pulses off, e-stop latched.
     EStopped,
-    /// Pulses on, standing at `pose`.
+    /// Pulses on, holding `pose`.
     Holding { pose: [f32; 2] },
-    /// On a ramp to the first knot, at the start of a play or of a swapped table's first cycle.
+    /// Ramp to the first knot, at the start of a play or before the first cycle of a swapped table.
     Starting {
         ramp: Ramp,
         since: u64,
         play: Progress,
     },
-    /// Playing the table; at tick `since` the play had come as far as `play`.
+    /// Playing the table. At tick `since` the play's progress was `play`.
     Playing { since: u64, play: Progress },
-    /// Standing at `pose` within a play.
+    /// Holding `pose` within a play.
     Paused {
         pose: [f32; 2],
         since_us: u64,
         detached: bool,
         play: Progress,
     },
-    /// On the ramp to neutral.
+    /// Ramp to neutral.
     Stopping { ramp: Ramp, since: u64 },
-    /// At neutral, pulses on for the last half second.
+    /// At neutral, with pulses on for the last half second.
     Settling { since: u64 },
 }
 
 /// Progress of a play.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Progress {
-    /// The request for it.
+    /// Request of this play.
     pub(crate) request: Play,
-    /// Time played, µs, without ramps and pauses; the sum of whole ticks, or of whole periods after a swap.
+    /// Time played, µs, without ramps and pauses: whole ticks, or whole periods after a swap.
     pub(crate) elapsed_us: u64,
 }
 
@@ -47,23 +47,23 @@ impl Progress {
         u64::from(self.request.period_us.max(1))
     }
 
-    /// Whole cycles done.
+    /// Number of finished cycles.
     pub(crate) fn cycles_done(&self) -> u64 {
         self.elapsed_us / self.period_us()
     }
 
-    /// Time within the cycle, µs.
+    /// Time since the start of the present cycle, µs.
     pub(crate) fn in_cycle_us(&self) -> u32 {
         (self.elapsed_us % self.period_us()) as u32
     }
 
-    /// Time until the last cycle is done, µs; 0 for a play without end.
+    /// Remaining time of the play, µs; 0 if it is endless.
     pub(crate) fn left_us(&self) -> u64 {
         let all_us = self.period_us() * u64::from(self.request.cycles);
         all_us.saturating_sub(self.elapsed_us)
     }
 
-    /// The last cycle is done.
+    /// Returns true if the last cycle is done.
     pub(crate) fn finished(&self) -> bool {
         self.request.cycles != 0 && self.cycles_done() >= u64::from(self.request.cycles)
     }
@@ -83,12 +83,12 @@ impl State {
         }
     }
 
-    /// Pulses are on.
+    /// Returns true if the pulses are on.
     pub(crate) fn powered(&self) -> bool {
         !matches!(self, Self::Stopped | Self::EStopped)
     }
 
-    /// The play that is under way.
+    /// Play in progress. Returns `None` in other states.
     pub(crate) fn play(&self) -> Option<&Progress> {
         match self {
             Self::Starting { play, .. }
@@ -98,7 +98,7 @@ impl State {
         }
     }
 
-    /// Goes on without a link.
+    /// Returns true if the motion continues without a link.
     pub(crate) fn detached(&self) -> bool {
         match self {
             Self::Starting { play, .. } | Self::Playing { play, .. } => play.request.detached,

@@ -1,11 +1,11 @@
-//! Two tables in memory: the active one, which plays, and the other, which an upload fills and a swap makes active.
+//! Gait tables in memory: the active table plays; an upload fills the staging table, and a swap makes it active.
 
 use crate::GaitTable;
 use crate::table::check::{Checker, Facts};
 use crate::table::{KNOT_BYTES, MIN_KNOTS};
 use link_protocol::{Begin, Chunk, MAX_TABLE, Play, Refusal, TableInfo};
 
-/// The tables and the upload.
+/// Active table, staging table and upload.
 #[derive(Clone)]
 pub(crate) struct Tables {
     pair: [GaitTable; 2],
@@ -14,12 +14,12 @@ pub(crate) struct Tables {
     swap: Option<Swap>,
 }
 
-/// What is known of the active table.
+/// State of the active table.
 #[derive(Clone)]
 struct Active {
     index: usize,
     crc32: u32,
-    /// `None` until it is checked for the present geometry.
+    /// Check results; `None` until the table is checked for the present geometry.
     facts: Option<Facts>,
     checker: Checker,
 }
@@ -29,23 +29,23 @@ struct Upload {
     number: u16,
     len: u16,
     crc32: u32,
-    /// Bytes held, from the first on.
+    /// Number of bytes received without a gap.
     wanted: u16,
 }
 
-/// A checked table that waits for the end of a cycle.
+/// Checked table that waits for the end of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Swap {
     pub(crate) facts: Facts,
     pub(crate) way: SwapWay,
 }
 
-/// How the play goes over to it.
+/// Transition of the play to the swapped table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum SwapWay {
-    /// At the end of the present cycle, by a ramp; the play goes on as it was asked for.
+    /// By a ramp at the end of the present cycle. The requested play continues.
     Ramp { via_neutral: bool },
-    /// At the end of the last cycle, at once, as the play that was asked to follow.
+    /// Immediately at the end of the last cycle, as the follower's own play.
     Follow(Play),
 }
 
@@ -59,12 +59,12 @@ impl Tables {
         }
     }
 
-    /// Both buffers, for loading from storage.
+    /// Both buffers, to be loaded from storage.
     pub(crate) fn buffers(&mut self) -> &mut [GaitTable; 2] {
         &mut self.pair
     }
 
-    /// Makes a loaded buffer the active table; it is checked before it plays.
+    /// Makes a loaded buffer the active table. It is checked before it plays.
     pub(crate) fn activate_loaded(&mut self, index: usize) {
         let crc32 = self.pair[index % 2].crc32();
         self.active = Some(Active {
@@ -84,12 +84,12 @@ impl Tables {
         self.active.as_ref().map(|active| active.crc32)
     }
 
-    /// Facts of the active table; `None` until it is checked.
+    /// Check results of the active table. Returns `None` until it is checked.
     pub(crate) fn facts(&self) -> Option<Facts> {
         self.active.as_ref().and_then(|active| active.facts)
     }
 
-    /// The geometry changed: what was found about crossings is void.
+    /// Invalidates the check results after a change of geometry.
     pub(crate) fn forget_facts(&mut self) {
         if let Some(active) = &mut self.active {
             active.facts = None;
@@ -97,7 +97,7 @@ impl Tables {
         }
     }
 
-    /// The active table waits for a check; does some of it.
+    /// Does some of the pending check of the active table.
     pub(crate) fn check_active(&mut self, links: &swimmer_model::Links<f32>, work: u32) {
         if let Some(active) = &mut self.active
             && active.facts.is_none()
@@ -112,7 +112,7 @@ impl Tables {
         self.active.as_ref().map_or(0, |active| 1 - active.index)
     }
 
-    /// The table that an upload fills.
+    /// Table that an upload fills.
     pub(crate) fn staging(&self) -> &GaitTable {
         &self.pair[self.staging_index()]
     }
@@ -121,13 +121,13 @@ impl Tables {
         self.swap
     }
 
-    /// The staging table is checked and waits for the end of a cycle.
+    /// Schedules the checked staging table for the end of a cycle.
     pub(crate) fn wait_for_swap(&mut self, swap: Swap) {
         self.swap = Some(swap);
         self.upload = None;
     }
 
-    /// Makes the staging table the active one.
+    /// Makes the staging table active.
     pub(crate) fn activate_staging(&mut self, facts: Facts) {
         let index = self.staging_index();
         let crc32 = self.pair[index].crc32();
@@ -141,7 +141,7 @@ impl Tables {
         self.swap = None;
     }
 
-    /// Names a table.
+    /// Identity of a table.
     pub(crate) fn info(
         &self,
         stored: bool,
@@ -155,12 +155,12 @@ impl Tables {
         })
     }
 
-    /// Bytes held of the open upload.
+    /// Number of bytes received by the open upload.
     pub(crate) fn uploaded(&self) -> Option<u16> {
         self.upload.map(|upload| upload.wanted)
     }
 
-    /// Opens an upload under a number, or resumes the one that holds the same bytes; returns the next wanted offset.
+    /// Opens an upload under a number, or resumes the one with the same content. Returns the next expected offset.
     pub(crate) fn begin(&mut self, number: u16, begin: Begin) -> Result<u16, Refusal> {
         let Begin { slot, len, crc32 } = begin;
         if slot != 0 {
@@ -182,7 +182,7 @@ impl Tables {
         let staging = self.staging_index();
         if wanted == 0 {
             self.pair[staging].clear(len / KNOT_BYTES as u16);
-            // The same table again, perhaps because the reply to its commit was lost: all its bytes are here.
+            // The active table again, perhaps because the reply to its commit was lost: all bytes are present.
             if let Some(active) = &self.active
                 && active.crc32 == crc32
                 && self.pair[active.index].bytes().len() == bytes
@@ -200,7 +200,7 @@ impl Tables {
         Ok(wanted)
     }
 
-    /// Takes a piece; returns the next wanted offset.
+    /// Stores a chunk; returns the next expected offset.
     pub(crate) fn chunk(&mut self, chunk: &Chunk) -> Result<u16, Refusal> {
         let staging = self.staging_index();
         let upload = self
@@ -213,7 +213,7 @@ impl Tables {
         if end > usize::from(upload.len) {
             return Err(Refusal::ChunkOutOfRange { wanted });
         }
-        // What is held stays; a piece behind a gap waits to be sent again.
+        // Received bytes stay. A chunk after a gap must be sent again.
         if let Some(held) = wanted.checked_sub(chunk.offset)
             && let Some(new) = chunk.data.get(usize::from(held)..)
         {
@@ -223,7 +223,7 @@ impl Tables {
         Ok(upload.wanted)
     }
 
-    /// All bytes have come and are those that were announced.
+    /// Checks that all bytes have arrived and match the announced checksum.
     pub(crate) fn complete(&self, number: u16) -> Result<(), Refusal> {
         let upload = self
             .upload
@@ -244,7 +244,7 @@ impl Tables {
         Ok(())
     }
 
-    /// Drops the upload, and the table that waits for the end of a cycle.
+    /// Drops the upload, and a table that waits for the end of a cycle.
     pub(crate) fn abandon(&mut self) {
         self.upload = None;
         self.swap = None;

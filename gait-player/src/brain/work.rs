@@ -1,5 +1,4 @@
-//! Work that takes longer than a tick may: checking a table or a way. It is done in pieces, and the request that asked
-//! for it is answered at its end.
+//! Work that exceeds a tick: checks of a table or a route. It runs in pieces, and its request gets the reply at the end.
 
 use super::Brain;
 use super::requests::Asked;
@@ -11,32 +10,32 @@ use link_protocol::{CrossingPlace, Joint, Play, Refusal, Reply};
 
 use super::state::{Progress, State};
 
-/// Units of work a tick while pulses are on. A unit takes up to 0.22 ms of the chip, and a tick up to 1 ms without any, so
-/// that it stays below the promised 2 ms (the emulated boards measure it).
+/// Units of work per tick while pulses are on. A unit takes up to 0.22 ms on the chip, and a tick without work up to 1 ms; the
+/// sum stays below the promised 2 ms (measured on the emulated boards).
 const POWERED_WORK: u32 = 3;
-/// Units while they are off and nothing waits for the tick: 16 ms.
+/// Units per tick while pulses are off: 16 ms.
 const IDLE_WORK: u32 = 70;
-/// Units of one look at a way.
+/// Units of one clearance evaluation on a route.
 const LOOK_WORK: u32 = CLEARANCE_WORK;
 
-/// What is being worked on.
+/// Work in progress.
 #[derive(Clone, Debug)]
 pub(crate) enum Work {
-    /// Nothing.
+    /// No work.
     Idle,
-    /// A commit's table, and the play that it is to be where it follows another.
+    /// Check of a committed table, with the play to follow if there is one.
     Commit {
         reply_to: Asked,
         checker: Checker,
         follow: Option<Play>,
     },
-    /// A commit's way from the first knot of the playing table to that of the new one.
+    /// Route of a swap, from the first knot of the playing table to that of the new one.
     Swap {
         reply_to: Asked,
         facts: Facts,
         route: Route,
     },
-    /// A play's table, then its way from where the servos are.
+    /// Check of a play's table, then of its route from the commanded angles.
     Play {
         reply_to: Asked,
         play: Play,
@@ -45,7 +44,7 @@ pub(crate) enum Work {
 }
 
 impl Brain {
-    /// Does a tick's worth of work.
+    /// Does the work of one tick.
     pub(super) fn advance_work(&mut self) {
         let mut left = if self.state.powered() {
             POWERED_WORK
@@ -130,7 +129,7 @@ impl Brain {
         }
     }
 
-    /// A table that follows waits for the last cycle to end, if there still is one.
+    /// Schedules a follower for the end of the last cycle, if the play has not ended yet.
     fn follower_checked(&mut self, reply_to: Asked, facts: Facts, play: Play) {
         let allowed = facts
             .allow(&self.limits)
@@ -191,7 +190,7 @@ impl Brain {
         facts: Facts,
         work: u32,
     ) {
-        // A trim may have come meanwhile.
+        // A trim may have changed the limits since the request.
         let allowed = facts
             .allow(&self.limits)
             .and_then(|()| facts.allow_period(&self.limits, play.period_us))
@@ -203,7 +202,7 @@ impl Brain {
             return self.finish(reply_to, Reply::Refused(Refusal::NotArmed));
         };
         let first = table.knot_angles(0);
-        // The ramp begins where the joints are commanded to be; after a trim that is not yet where they are held.
+        // The ramp begins at the commanded angles. After a trim they differ from the held ones.
         let mut route = route
             .filter(|route| route.begins_at(self.commanded))
             .unwrap_or(Route::new(self.commanded, first));
@@ -239,7 +238,7 @@ impl Brain {
     }
 }
 
-/// Two tables start at the same knot.
+/// Checks that two tables start at the same knot.
 fn joins(active: [i16; 2], next: [i16; 2]) -> Result<(), Refusal> {
     for joint in [Joint::Front, Joint::Back] {
         let step = i32::from(next[joint.index()]) - i32::from(active[joint.index()]);

@@ -1,31 +1,30 @@
-//! What a servo makes of its pulses: a limited rate and a dead band. The one truth for the twin (which moves by it), the
-//! calibration and every prediction (which must know what really moved).
+//! Servo model: shaft angle from pulses, with rate limit and dead band. Twin, calibration and every prediction share it.
 //!
-//! The dead band is a play operator: the shaft stands while the command is within `dead_band` of it; beyond, it runs at
-//! `max_rate` towards the command and stops where the error has shrunk to `dead_band`.
+//! The dead band is a play operator: the shaft stands while the command is within `dead_band` of it. Beyond, it turns at
+//! `max_rate` towards the command and stops at an error of `dead_band`.
 
 use super::ServoMap;
 
-/// What sets a servo apart from an ideal one.
+/// Parameters of a real servo.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlantParameters {
-    /// Fastest turn, rad/s; infinite for none.
+    /// Largest rate, rad/s; infinite for an ideal servo.
     pub max_rate: f64,
-    /// Error that does not move the shaft yet, rad; 0 for none.
+    /// Largest error that does not move the shaft, rad; 0 for an ideal servo.
     pub dead_band: f64,
-    /// Pulses come in multiples of this, ns; 0 and 1 for whole nanoseconds.
+    /// Resolution of the pulses, ns; 0 and 1 stand for whole nanoseconds.
     pub pulse_step_ns: u32,
 }
 
 impl PlantParameters {
-    /// A servo that is where it is told to be.
+    /// Ideal servo: the shaft equals the command.
     pub const IDEAL: Self = Self {
         max_rate: f64::INFINITY,
         dead_band: 0.0,
         pulse_step_ns: 0,
     };
 
-    /// The angle that a pulse commands: quantised as the timer quantises it, then read by the map.
+    /// Angle that a pulse commands, rad: quantised like the timer, then read by the map.
     pub fn command(&self, map: &ServoMap, pulse_ns: u32) -> f64 {
         let step = self.pulse_step_ns.max(1);
         let quantised = pulse_ns.saturating_add(step / 2) / step * step;
@@ -33,20 +32,20 @@ impl PlantParameters {
     }
 }
 
-/// A servo's shaft.
+/// Shaft of a servo.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ServoPlant {
-    /// Where the shaft is, rad.
+    /// Angle of the shaft, rad.
     pub angle: f64,
 }
 
 impl ServoPlant {
-    /// A shaft at rest at `angle` \[rad\].
+    /// Returns a shaft at rest at `angle` \[rad\].
     pub const fn new(angle: f64) -> Self {
         Self { angle }
     }
 
-    /// Time until the shaft stands under a constant command \[s\]; 0 where it stands already.
+    /// Time until the shaft stands under a constant command, s; 0 if it stands already.
     pub fn time_to_rest(&self, parameters: &PlantParameters, command: f64) -> f64 {
         let excess = libm::fabs(command - self.angle) - parameters.dead_band;
         if excess > 0.0 {
@@ -56,7 +55,7 @@ impl ServoPlant {
         }
     }
 
-    /// Lets `seconds` pass under a constant command \[rad\]; exact.
+    /// Advances by `seconds` under a constant command \[rad\]; exact.
     pub fn advance(&mut self, parameters: &PlantParameters, command: f64, seconds: f64) {
         let error = command - self.angle;
         let excess = libm::fabs(error) - parameters.dead_band;

@@ -1,4 +1,4 @@
-//! A storage in memory that behaves like the chip's flash: for tests and virtual robots, which share this one.
+//! Storage in memory that behaves like the chip's flash, for tests and virtual robots.
 
 extern crate std;
 
@@ -11,10 +11,10 @@ use crate::ShortStarts;
 
 const SLOT_BYTES: usize = PAGE * SLOT_PAGES;
 
-/// Two table slots, a settings record and the record of short starts.
+/// In-memory storage: two table slots, a settings record and the record of short starts.
 #[derive(Clone, PartialEq, Eq)]
 pub struct MemoryStorage {
-    /// The table slots, byte by byte.
+    /// Bytes of the table slots.
     pub slots: [Vec<u8>; SLOTS],
     /// The settings record.
     pub settings: Option<Vec<u8>>,
@@ -23,7 +23,7 @@ pub struct MemoryStorage {
 }
 
 impl MemoryStorage {
-    /// As delivered: nothing stored.
+    /// Returns an erased storage, as delivered.
     pub fn erased() -> Self {
         Self {
             slots: core::array::from_fn(|_| std::vec![0xFF; SLOT_BYTES]),
@@ -33,7 +33,7 @@ impl MemoryStorage {
     }
 }
 
-/// Without the settings record, which holds the key.
+/// Omits the settings record, which holds the key.
 impl fmt::Debug for MemoryStorage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("MemoryStorage")
@@ -53,7 +53,7 @@ impl Default for MemoryStorage {
 impl Storage for MemoryStorage {
     type Error = Infallible;
 
-    /// Reads like the chip's flash: what lies outside is as if erased.
+    /// Reads like the chip's flash: bytes outside a slot read as erased.
     fn read(&mut self, slot: usize, offset: usize, bytes: &mut [u8]) -> Result<(), Infallible> {
         bytes.fill(0xFF);
         if let Some(stored) = self.slots.get(slot).and_then(|slot| slot.get(offset..)) {

@@ -1,5 +1,5 @@
-//! Checks a table before it may play: the interpolant, not only the knots. The work comes in pieces, because a chip
-//! without floating point has two milliseconds a tick: a checker is fed units of work until it knows the [`Facts`].
+//! Check of a table before it may play: of the interpolant, not only of the knots. It runs in pieces, because a chip without an
+//! FPU has two milliseconds per tick; a checker consumes units of work until it returns the [`Facts`].
 
 use super::{Cubic, GaitTable};
 use crate::Limits;
@@ -8,31 +8,31 @@ use libm::{fabsf, sqrtf};
 use link_protocol::{ANGLE_UNIT_RAD, CrossingPlace, Joint, Refusal};
 use swimmer_model::Links;
 
-/// How far the interpolant may swing beyond the largest angle, 1e-4 rad: at a corner of a gait that lies on its bound it
-/// does so by a share of one step. The clamp before the servos cuts it off.
+/// Allowed overshoot of the interpolant beyond the largest angle, 1e-4 rad. At a corner of a gait on its bound it overshoots by
+/// a share of one step. The clamp before the servos cuts it off.
 const ANGLE_SLACK: f32 = 50.0;
-/// What rounding to 1e-4 rad adds to a rate: slopes may exceed the limit by this share.
+/// Factor by which slopes may exceed the limit because of rounding to 1e-4 rad.
 const RATE_SLACK: f32 = 1.005;
-/// A closing step may be this many times the largest other one (plus rounding): gaits are not sampled uniformly in arc.
+/// Largest ratio of the closing step to the largest other step (plus rounding): gaits are not sampled uniformly in arc length.
 const CLOSING_FACTOR: f32 = 2.0;
 const CLOSING_SLACK: f32 = 20.0;
-/// Units of work of one evaluation of the clearance; an interval's angles and slopes are one unit.
+/// Units of work of a clearance evaluation; the angles and slopes of an interval are one unit.
 pub(crate) const CLEARANCE_WORK: u32 = 2;
-/// Share of the margin that may be given up between two looks at the clearance.
+/// Share of the margin that may be lost between two clearance evaluations.
 const GIVEN_UP: f32 = 0.5;
 
-/// The place in a table where something is largest.
+/// Position in a table with the largest value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Largest {
-    /// Which joint.
+    /// Joint of the value.
     pub joint: Joint,
-    /// The knot before the place.
+    /// Index of the knot before the position.
     pub knot: u16,
-    /// The value there; 1e-4 rad, or 1e-4 rad an interval.
+    /// Value there, in 1e-4 rad, or 1e-4 rad per interval.
     pub value: f32,
 }
 
-/// What is known of a table once it is checked; limits and period are held against it later.
+/// Results of a table's check, independent of limits and period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Facts {
     knots: u16,
@@ -43,10 +43,10 @@ pub struct Facts {
 }
 
 impl Facts {
-    /// Whether the table may be active: closed, clear of crossings, within the largest angle.
+    /// Checks that the table may be active: closed, clear of crossings, within the largest angle.
     ///
     /// # Errors
-    /// The first reason why not.
+    /// The first violated condition.
     pub fn allow(&self, limits: &Limits) -> Result<(), Refusal> {
         if let Some(refusal) = self.open.or(self.crossing) {
             return Err(refusal);
@@ -64,16 +64,16 @@ impl Facts {
         Ok(())
     }
 
-    /// Shortest period at which no joint is faster than allowed, µs.
+    /// Shortest period within the rate limit of both joints, µs.
     pub fn min_period_us(&self, limits: &Limits) -> u32 {
         let seconds = shortest_period(fabsf(self.slope.value), self.knots, limits);
         libm::ceilf(seconds * 1e6) as u32
     }
 
-    /// Whether the table may play at this period.
+    /// Checks that the table may play at this period.
     ///
     /// # Errors
-    /// Where it is too fast.
+    /// The period is too short.
     pub fn allow_period(&self, limits: &Limits, period_us: u32) -> Result<(), Refusal> {
         let min_period_us = self.min_period_us(limits);
         if period_us < min_period_us {
@@ -88,14 +88,14 @@ impl Facts {
     }
 }
 
-/// Shortest period, s, at which a joint of this slope (1e-4 rad an interval) is no faster than allowed.
+/// Shortest period within the rate limit for a joint of this slope (1e-4 rad per interval), s.
 fn shortest_period(slope: f32, knots: u16, limits: &Limits) -> f32 {
     slope * ANGLE_UNIT_RAD * f32::from(knots) / (limits.max_rate * RATE_SLACK)
 }
 
 impl GaitTable {
-    /// Shortest period at which no joint is faster than allowed within one interval, s. The longest of all intervals is that
-    /// of [`Facts::min_period_us`]; who times a gait sees by this where it is too fast.
+    /// Shortest period within the rate limit for one interval, s. The maximum over all intervals is [`Facts::min_period_us`];
+    /// the profile shows where a gait is too fast.
     pub fn interval_period(&self, interval: usize, limits: &Limits) -> f32 {
         let slopes = self
             .interval(interval)
@@ -104,7 +104,7 @@ impl GaitTable {
     }
 }
 
-/// A check in progress.
+/// Check in progress.
 #[derive(Clone, Debug)]
 pub struct Checker {
     next: usize,
@@ -112,9 +112,9 @@ pub struct Checker {
     slope: Largest,
     steps: [f32; 2],
     crossing: Option<Refusal>,
-    /// How far the interval was followed, 0 to 1.
+    /// Position within the interval, 0 to 1.
     at: f32,
-    /// Way that the links may still move from there before the last clearance vouches for nothing, m.
+    /// Distance that the links may still move before the last clearance is used up, m.
     reach: f32,
 }
 
@@ -125,7 +125,7 @@ const NOTHING: Largest = Largest {
 };
 
 impl Checker {
-    /// A check at its start.
+    /// Returns a checker at the start of a table.
     pub const fn new() -> Self {
         Self {
             next: 0,
@@ -138,7 +138,7 @@ impl Checker {
         }
     }
 
-    /// Does `work` units of work (a few more at most); the facts once all is done.
+    /// Does `work` units of work (a few more at most). Returns the facts when all is done.
     pub fn advance(&mut self, table: &GaitTable, links: &Links<f32>, work: u32) -> Option<Facts> {
         let mut left = work.max(1);
         while self.next < table.knots() {
@@ -163,7 +163,7 @@ impl Checker {
         })
     }
 
-    /// Angles and slopes of one interval; the same once more changes nothing.
+    /// Measures angles and slopes of one interval; idempotent.
     fn measure(&mut self, cubics: &[Cubic; 2], knots: usize) {
         let knot = self.next as u16;
         for (joint, cubic) in [Joint::Front, Joint::Back].into_iter().zip(cubics) {
@@ -177,7 +177,8 @@ impl Checker {
         }
     }
 
-    /// Follows one interval from look to look, each as far as the last clearance vouches for; true at its end.
+    /// Follows one interval between clearance evaluations, each step as long as the last clearance allows. Returns true at the
+    /// end of the interval.
     fn follow(&mut self, cubics: &[Cubic; 2], links: &Links<f32>, left: &mut u32) -> bool {
         if self.crossing.is_some() {
             return true;
@@ -240,11 +241,11 @@ fn raise(largest: &mut Largest, joint: Joint, knot: u16, value: f32) {
 }
 
 impl Cubic {
-    /// The value of largest magnitude for t in \[0, 1\]; any smaller one where none is above `known`.
+    /// Value of largest magnitude for t in \[0, 1\]; any smaller one if none exceeds `known`.
     fn largest_value(&self, known: f32) -> f32 {
         let end = self.value(1.0);
         let largest = larger(self.a, end);
-        // The curve lies within the hull of its control points.
+        // The curve lies within the convex hull of its control points.
         let hull = larger(
             larger(
                 self.a + self.b / 3.0,
@@ -255,7 +256,7 @@ impl Cubic {
         if fabsf(hull) <= known.max(fabsf(largest)) {
             return largest;
         }
-        // Zeros of the slope b + 2ct + 3dt², in the form that has no cancellation.
+        // Roots of the slope b + 2ct + 3dt², in the form without cancellation.
         let root = sqrtf((self.c * self.c - 3.0 * self.b * self.d).max(0.0));
         let q = -(self.c + if self.c < 0.0 { -root } else { root });
         let at = |t: f32| {
@@ -268,7 +269,7 @@ impl Cubic {
         larger(largest, larger(at(q / (3.0 * self.d)), at(self.b / q)))
     }
 
-    /// The slope of largest magnitude for t in \[0, 1\].
+    /// Slope of largest magnitude for t in \[0, 1\].
     fn largest_slope(&self) -> f32 {
         let ends = larger(self.b, self.slope(1.0));
         let vertex = -self.c / (3.0 * self.d);
@@ -279,7 +280,7 @@ impl Cubic {
         }
     }
 
-    /// No shorter than the way the angle goes, back and forth: the length of the control polygon.
+    /// Upper bound of the total variation of the angle: the length of the control polygon.
     fn way(&self) -> f32 {
         fabsf(self.b) / 3.0
             + fabsf(self.b + self.c) / 3.0

@@ -41,7 +41,7 @@ fn a_circle_comes_back_to_the_rounding_of_its_knots() {
         let angle = TAU * (u + 0.125);
         let shape = table.at(place(u, &table));
         for (got, want) in shape.angles.into_iter().zip([angle.cos(), angle.sin()]) {
-            // Half a unit of the knots, and a little for the weights of the cubic.
+            // Half a unit of the knots, plus a small amount for the weights of the cubic.
             assert!((f64::from(got) - 1.9 * want).abs() < 0.7e-4, "{u}");
         }
     }
@@ -57,7 +57,7 @@ fn interpolation_is_of_fourth_order() {
             worst.max((f64::from(shape.angles[0]) - 3.0 * (TAU * (u + 0.125)).cos()).abs())
         })
     };
-    // Twice the knots, a sixteenth of the error, as long as it is far above the rounding of the knots.
+    // Twice the knots give a sixteenth of the error, while it is far above the rounding of the knots.
     let order = (error(12) / error(24)).log2();
     assert!((3.7..4.7).contains(&order), "{order}");
 }
@@ -79,7 +79,7 @@ proptest! {
         }
     }
 
-    /// The checker's largest angle and slope hold everywhere between the knots.
+    /// The checker's largest angle and slope bound the interpolant between the knots.
     #[test]
     fn the_facts_bound_the_interpolant(knots in prop::collection::vec([-20_000_i16..20_000, -20_000_i16..20_000], 2..=12)) {
         let bytes: Vec<u8> = knots.iter().flatten().flat_map(|angle| angle.to_le_bytes()).collect();
@@ -249,8 +249,8 @@ fn too_large_a_gait_names_joint_and_angle() {
     assert!((angle.abs() - 29_000).abs() < 3, "{angle}");
 }
 
-/// The corners of the paper's gait (b), robot, |φ| ≤ 2.8, joined by straight lines: where its upper bound begins the
-/// side links come within 4.4 mm of each other. It is no crossing, and must be allowed; three degrees further it is too close.
+/// The corners of the paper's gait (b), robot, |φ| ≤ 2.8, joined by straight lines. At the start of its upper bound the side
+/// links come within 4.4 mm of each other. This is no crossing and must be allowed; three degrees further is too close.
 #[test]
 fn the_papers_bounded_gait_passes_between_its_links() {
     let gait = |entry: f64| {
@@ -286,7 +286,7 @@ fn the_papers_bounded_gait_passes_between_its_links() {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(4000))]
-    /// The sampled interpolant is the witness: no table passes whose links touch, between few knots as between many.
+    /// No accepted table lets links touch on the densely sampled interpolant, with few knots or many.
     #[test]
     fn no_table_passes_whose_links_touch_anywhere(
         knots in prop::collection::vec([-28_000_i16..28_000, -28_000_i16..28_000], 2..=12), purcell in any::<bool>()

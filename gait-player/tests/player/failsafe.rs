@@ -1,4 +1,4 @@
-//! Promise R5 in virtual time: what stops the robot stops it in time.
+//! Promise R5 in virtual time: every failsafe stops the robot in time.
 #![allow(clippy::float_cmp)] // set-points are compared to the last bit
 use crate::bench;
 
@@ -21,7 +21,7 @@ fn r5_a_silent_link_starts_the_ramp_within_half_a_second() {
         assert!((400_000..=500_000).contains(&took), "{took}");
         bench.keep_alive = true;
         follow_stop(&mut bench, StopCause::LinkLost);
-        // The link is back; nothing resumes.
+        // The link returns, but nothing resumes.
         assert!(
             bench
                 .run(5 * SECOND)
@@ -98,7 +98,7 @@ fn another_host_can_take_over_a_detached_play() {
     bench.beat();
     bench.done(pause);
     bench.run(SECOND);
-    // Whoever sets it in motion again has to be there.
+    // Resuming the motion requires a live host.
     assert_eq!(bench.refused(Request::Resume), Refusal::NotFresh);
     bench.beat();
     bench.done(Request::Resume);
@@ -115,7 +115,7 @@ fn a_detached_pause_holds_for_a_minute() {
     let took = bench.until(StateName::Stopping, 61 * SECOND);
     assert!(took.abs_diff(60 * SECOND) <= TICK, "{took}");
     follow_stop(&mut bench, StopCause::PauseExpired);
-    // The minute begins when the operator detaches, however long the pause is by then.
+    // The minute begins when the operator detaches, regardless of the pause so far.
     let mut bench = Bench::playing(&circle(1.2), play(0, 5_000_000));
     bench.done(Request::Pause { detached: false });
     bench.run(70 * SECOND);
@@ -123,7 +123,7 @@ fn a_detached_pause_holds_for_a_minute() {
     bench.keep_alive = false;
     let took = bench.until(StateName::Stopping, 61 * SECOND);
     assert!(took.abs_diff(60 * SECOND) <= TICK, "{took}");
-    // It is a minute with a link too; asked for again it is not longer.
+    // The minute also counts with a link, and a repeated request does not extend it.
     let mut bench = Bench::playing(&circle(1.2), play(0, 5_000_000));
     bench.done(Request::Pause { detached: true });
     bench.run(40 * SECOND);
@@ -131,7 +131,7 @@ fn a_detached_pause_holds_for_a_minute() {
     bench.keep_alive = false;
     let took = bench.until(StateName::Stopping, 61 * SECOND);
     assert!(took.abs_diff(20 * SECOND) <= TICK, "{took}");
-    // An attached pause after a detached one needs the link again.
+    // An attached pause after a detached one requires the link again.
     let mut bench = Bench::playing(&circle(1.2), play(0, 5_000_000));
     bench.done(Request::Pause { detached: true });
     bench.done(Request::Pause { detached: false });
@@ -160,7 +160,7 @@ fn r5_a_stop_moves_within_a_tick_and_an_estop_drops_the_pulses_within_one() {
         let after = bench.tick();
         assert_eq!((after.state, after.pulses_ns), (StateName::EStopped, None));
         assert_eq!(bench.status().cause, StopCause::EStop);
-        // A stop does not soften it, an arm does not clear it.
+        // A stop does not weaken the e-stop, and an arm does not clear it.
         bench.done(Request::Stop);
         assert_eq!(bench.refused(ARM), Refusal::EStopped);
         assert_eq!(bench.refused(play(1, 5_000_000)), Refusal::EStopped);
@@ -170,7 +170,7 @@ fn r5_a_stop_moves_within_a_tick_and_an_estop_drops_the_pulses_within_one() {
                 .iter()
                 .all(|output| output.pulses_ns.is_none())
         );
-        // The pulses come back where they were dropped.
+        // The pulses return at the pose where they were switched off.
         let pose = bench.output.setpoint;
         bench.clear_estop();
         bench.done(ARM);
@@ -187,7 +187,7 @@ fn a_stop_during_a_stop_keeps_the_more_severe_cause() {
     bench.until(StateName::Stopping, SECOND);
     bench.done(Request::Stop);
     assert_eq!(bench.status().cause, StopCause::LinkLost);
-    // Low for its second by now: worse.
+    // Low for more than a second by now: the more severe cause.
     bench.until(StateName::Settling, SECOND);
     let mut bench = Bench::playing(&circle(1.2), play(0, 5_000_000));
     bench.run(SECOND);
@@ -218,8 +218,8 @@ fn an_arm_during_a_stop_holds_where_it_is() {
     bench.until(StateName::Playing, 2 * SECOND);
 }
 
-/// A trim shifts what the present pulses stand for; a stop right after it must still reach neutral in time, and stand
-/// there for its half second.
+/// A trim changes the angle of the present pulses. A stop right after it must still reach neutral in time, and hold it for half
+/// a second.
 #[test]
 fn a_trim_does_not_stretch_the_stop_after_it() {
     for (max_angle, max_rate, trims) in [(2.8, 3.5, [5_000, -5_000]), (0.1, 0.1, [400, -550])] {
@@ -260,7 +260,7 @@ fn a_trim_does_not_stretch_the_stop_after_it() {
     }
 }
 
-/// One that would leave the present pulses outside the largest angle is refused while they are on.
+/// A trim that puts the present pulses beyond the largest angle is refused while they are on.
 #[test]
 fn a_trim_that_no_stop_could_undo_in_time_is_refused_while_powered() {
     let mut bench = Bench::new();

@@ -1,4 +1,4 @@
-//! Plays that follow each other without a pause: each with its own table, cycles and period.
+//! Sequences of plays without a pause, each with its own table, cycles and period.
 #![allow(clippy::float_cmp)] // set-points are compared to the last bit
 use crate::bench;
 
@@ -7,7 +7,7 @@ use gait_player::storage::MemoryStorage;
 use gait_player::{Brain, GaitTable, TICK_US};
 use link_protocol::*;
 
-/// Circles that all pass (0.3, −0.2) and start there.
+/// Circles that start at the common point (0.3, −0.2).
 fn from_common(radius: f64, knots: usize) -> GaitTable {
     GaitTable::from_fn(knots, |u| {
         let (sin, cos) = (std::f64::consts::TAU * u).sin_cos();
@@ -26,7 +26,7 @@ fn follow(bench: &mut Bench, table: &GaitTable, cycles: u32, period_us: u32) -> 
     }))
 }
 
-/// The set-point of a table after a time.
+/// Set-point of a table at a time.
 fn at(table: &GaitTable, elapsed_us: u64, period_us: u32) -> [f32; 2] {
     let in_cycle = u32::try_from(elapsed_us % u64::from(period_us)).unwrap();
     table.at(table.phase(in_cycle, period_us)).angles
@@ -35,7 +35,7 @@ fn at(table: &GaitTable, elapsed_us: u64, period_us: u32) -> [f32; 2] {
 #[test]
 fn three_plays_are_one_motion() {
     let tables = [(0.9, 512), (0.4, 200), (0.7, 128)].map(|(r, n)| from_common(r, n));
-    // The second period is no whole number of ticks: what is left over goes to the third play.
+    // The second period is not a multiple of a tick; the remainder belongs to the third play.
     let plays = [(2, 6_000_000), (3, 3_333_333), (1, 4_000_000)];
     let mut bench = Bench::playing(&tables[0], play(plays[0].0, plays[0].1));
     let mut next = 1;
@@ -43,7 +43,7 @@ fn three_plays_are_one_motion() {
     while bench.tick().state == StateName::Playing {
         let status = bench.status();
         told.push((status.cycles, status.period_us));
-        // As a host does: the next one as soon as the robot has room.
+        // As a host does: the next table is sent as soon as the staging table is free.
         if next < 3 && !status.flags.contains(Flags::SWAP_PENDING) {
             let before = bench.now_us;
             let upload = bench.send_table(&tables[next]);
@@ -68,7 +68,7 @@ fn three_plays_are_one_motion() {
     assert_eq!(bench.status().cause, StopCause::Finished);
 }
 
-/// Every set-point from the first to the last is that of the tables put end to end.
+/// Every set-point equals that of the concatenated tables.
 #[test]
 fn no_tick_is_lost_and_none_is_played_twice() {
     let (first, second) = (from_common(0.9, 256), from_common(0.4, 128));
@@ -98,7 +98,7 @@ fn no_tick_is_lost_and_none_is_played_twice() {
     assert_eq!(bench.output.setpoint, second.knot_angles(0));
 }
 
-/// A follower ends a play without end, and may be one itself.
+/// A follower ends an endless play, and may be endless itself.
 #[test]
 fn a_play_without_end_is_followed_at_the_end_of_its_cycle() {
     let (first, second) = (from_common(0.9, 256), from_common(0.4, 128));
@@ -152,7 +152,7 @@ fn what_cannot_follow_is_refused_and_the_play_goes_on() {
         (status.state, status.cycles, status.table.unwrap().crc32),
         (StateName::Playing, 20, first.crc32())
     );
-    // A detached play is followed by one with an end.
+    // The follower of a detached play must have an end.
     let mut detached = Bench::playing(
         &first,
         Request::Play(Play {
@@ -168,7 +168,7 @@ fn what_cannot_follow_is_refused_and_the_play_goes_on() {
     );
 }
 
-/// Too late is told, and the robot comes to rest where the last play ended.
+/// A late follower is refused, and the robot rests where the last play ended.
 #[test]
 fn a_follower_that_comes_too_late_does_not_move_the_robot() {
     let (first, second) = (from_common(0.9, 256), from_common(0.4, 512));
@@ -190,7 +190,7 @@ fn a_follower_that_comes_too_late_does_not_move_the_robot() {
     assert_eq!(bench.status().cause, StopCause::Finished);
 }
 
-/// A stop means the whole: nothing follows.
+/// A stop cancels the follower.
 #[test]
 fn a_stop_ends_what_waits_to_follow() {
     let (first, second) = (from_common(0.9, 256), from_common(0.4, 128));
@@ -203,7 +203,7 @@ fn a_stop_ends_what_waits_to_follow() {
     assert_eq!(bench.output.state, StateName::Stopped);
 }
 
-/// The table that was never played becomes neither the active nor the stored one.
+/// A cancelled follower becomes neither the active nor the stored table.
 #[test]
 fn a_stop_leaves_the_table_that_was_played() {
     let (first, second) = (from_common(0.9, 256), from_common(0.4, 128));
@@ -229,7 +229,7 @@ fn a_stop_leaves_the_table_that_was_played() {
     }
 }
 
-/// No chain of detached plays gives a robot more than an hour of motion without a host.
+/// No chain of detached plays moves a robot for more than an hour without a host.
 #[test]
 fn a_detached_play_and_its_follower_last_an_hour_at_most() {
     let (first, second) = (from_common(0.9, 128), from_common(0.4, 128));
@@ -255,7 +255,7 @@ fn a_detached_play_and_its_follower_last_an_hour_at_most() {
     }
     bench.done(detached(720, 5_000_000));
     bench.until(StateName::Playing, 3 * SECOND);
-    // An hour is ahead already; after ten minutes of it there is time for ten minutes more.
+    // One hour is scheduled already; after ten minutes there is time for ten more.
     let too_long = Reply::Refused(Refusal::DetachedTooLong);
     assert_eq!(follow(&mut bench, &second, 1, 5_000_000), too_long);
     bench.run(600 * SECOND);
@@ -268,7 +268,7 @@ fn a_detached_play_and_its_follower_last_an_hour_at_most() {
     assert_eq!(attended.output.state, StateName::Playing);
 }
 
-/// R17: what follows is the table and the settings that its host checked.
+/// Promise R17: the follower must be the table, with the settings, that its host checked.
 #[test]
 fn a_follower_other_than_the_checked_one_is_refused() {
     let (first, second) = (from_common(0.9, 256), from_common(0.4, 128));

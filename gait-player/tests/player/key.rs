@@ -1,4 +1,4 @@
-//! A robot with a shared key: only what is signed for its session acts, once; stops act always.
+//! Robot with a shared key: only frames signed for its session act, each once. Stops always act.
 use crate::bench;
 
 use bench::*;
@@ -8,7 +8,7 @@ use link_protocol::*;
 
 const KEY: Key = Key(*b"sixteen letters!");
 
-/// A host with a key: what it sends, and what an adversary recorded of it.
+/// Host with a key, and an adversary's recording of its frames.
 struct Host {
     bench: Bench,
     seal: Seal,
@@ -17,7 +17,7 @@ struct Host {
 }
 
 impl Host {
-    /// A robot with a key and a table, greeted.
+    /// Returns a greeted robot with a key and a table.
     fn new() -> Self {
         let mut bench = Bench::new();
         bench.upload(&circle(1.2));
@@ -79,7 +79,7 @@ impl Host {
         self.say(0, &Message::Heartbeat(heartbeat));
     }
 
-    /// Ticks, with signed keep-alives.
+    /// Runs ticks with signed keep-alives.
     fn run(&mut self, us: u64) {
         for tick in 0..us / TICK {
             if tick % 2 == 0 {
@@ -110,7 +110,7 @@ fn what_is_signed_acts_and_what_is_not_is_refused_with_advice() {
     ] {
         assert_eq!(host.bench.refused(request), Refusal::KeyNeeded);
     }
-    // Signed keep-alives came for a second, so the link is alive; unsigned ones do not keep it so.
+    // Signed keep-alives came for a second, so the link is alive; unsigned ones do not renew the lease.
     host.bench.keep_alive = true;
     host.bench.run(SECOND);
     assert_eq!(
@@ -135,7 +135,7 @@ fn stops_need_no_signature_and_take_no_place() {
         assert_eq!(host.ask(play(0, 5_000_000)), Reply::Done);
         host.run(2 * SECOND);
         assert_eq!(host.state(), StateName::Playing);
-        // A number far ahead: the next request of the host is none the worse for it.
+        // A number far ahead does not affect the next request of the host.
         let header = Header::new(host.bench.session, host.bench.sequence + 1000);
         host.bench.send(header, &Message::Request(stop));
         host.bench.tick();
@@ -154,7 +154,7 @@ fn another_key_is_told_to_be_wrong() {
     assert_eq!(stranger.ask(Request::Stop), Reply::Done);
 }
 
-/// Everything that was ever said, again: in the same session, in a later one, after a reset.
+/// Replays the whole recording: in the same session, in a later one, after a reset.
 #[test]
 fn a_recording_moves_nothing() {
     let mut host = Host::new();
@@ -177,7 +177,7 @@ fn a_recording_moves_nothing() {
             bench.greet(77);
         }
         if round == 2 {
-            // After a reset that draws another nonce; the numbers of sessions are the same ones again.
+            // A reset with another nonce, but the same session numbers.
             let boot = Boot::power_on(0xBEEF, bench.session);
             let mut brain = Brain::new(BrainConfig::robot(IDENTITY, boot));
             brain.load(&mut stored).unwrap();
@@ -205,7 +205,7 @@ fn a_key_is_set_only_while_stopped_and_changed_only_with_the_old_one() {
     assert_eq!(host.ask(Request::SetKey(Some(new))), Reply::Done);
     let mut host = Host::greet(host.bench, &new, 11);
     assert_eq!(host.ask(Request::SetKey(None)), Reply::Done);
-    // Signatures are read past where there is no key.
+    // Without a key, signatures are skipped.
     let mut host = Host::greet(host.bench, &KEY, 12);
     assert_eq!(host.ask(ARM), Reply::Done);
     assert!(!host.bench.status().flags.contains(Flags::KEY_SET));
@@ -249,7 +249,7 @@ fn a_key_outlives_a_power_cut_and_limits_that_have_changed() {
     bench.done(ARM);
 }
 
-/// The attack: the session in which a key was set, and the number of the open one, are worth nothing to a stranger.
+/// Attack: the session in which a key was set, and the number of the open one, are useless to a stranger.
 #[test]
 fn setting_a_key_closes_the_session() {
     let mut bench = Bench::new();
@@ -271,7 +271,7 @@ fn setting_a_key_closes_the_session() {
         assert_eq!(bench.refused(Request::Status), Refusal::StaleSession);
     }
     bench.session = session;
-    // The reply was lost, and the host sends the same again; another key under that number is another request.
+    // The reply was lost, and the host repeats the request; another key under that number is another request.
     let again = |key| Request::SetKey(key);
     let reply = bench.send_request(number, again(Some(KEY)));
     assert_eq!(reply, Some(Reply::Done));
@@ -279,12 +279,12 @@ fn setting_a_key_closes_the_session() {
         let reply = bench.send_request(number, again(other));
         assert_eq!(reply, Some(Reply::Refused(Refusal::StaleSession)));
     }
-    // No lease, no telemetry; a stop acts all the same.
+    // No lease and no telemetry, but a stop acts.
     bench.telemetry.clear();
     bench.run(SECOND);
     assert!(bench.telemetry.is_empty());
     assert_eq!(bench.ask(Request::Stop), Reply::Done);
-    // The same greeting again opens a session that wants the key.
+    // The same greeting opens a session that requires the key.
     let reply = bench.greet(1);
     assert_ne!(reply.session, session);
     assert_eq!(bench.refused(Request::Status), Refusal::KeyNeeded);
@@ -292,7 +292,7 @@ fn setting_a_key_closes_the_session() {
     assert_eq!(host.ask(ARM), Reply::Done);
 }
 
-/// A signed session that is closed repeats its last reply signed with the key that it began with.
+/// A closed signed session repeats its last reply, signed with the key that the session began with.
 #[test]
 fn the_repeat_in_a_closed_session_is_signed_with_its_own_key() {
     let mut host = Host::new();
@@ -304,7 +304,7 @@ fn the_repeat_in_a_closed_session_is_signed_with_its_own_key() {
         host.bench.replies.pop().map(|(_, reply)| reply),
         Some(Reply::Done)
     );
-    // Unsigned, it is nobody's.
+    // An unsigned frame belongs to no session.
     let (header, none) = (
         Header::new(host.bench.session, host.bench.sequence),
         Message::Request(Request::SetKey(None)),

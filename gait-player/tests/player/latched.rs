@@ -1,4 +1,4 @@
-//! Promises R6 and R8 in virtual time: a stop is latched, and only an arm that is allowed ends it.
+//! Promises R6 and R8 in virtual time: a stop is latched, and only a granted arm ends it.
 use crate::bench;
 
 use bench::stops::*;
@@ -41,13 +41,13 @@ fn r8_a_low_battery_stops_and_refuses_until_it_is_well() {
     }
 }
 
-/// A tired pack recovers between two strokes; no single dip lasts a second.
+/// A weak pack recovers between two strokes, so no single dip lasts a second.
 #[test]
 fn r8_a_pack_that_dips_on_every_stroke_stops_the_robot() {
     let mut bench = Bench::playing(&circle(1.2), play(0, 20_000_000));
     let mut dips = 0;
     while bench.output.state == StateName::Playing {
-        // Two dips of 100 ms a cycle, 10 s apart.
+        // Two dips of 100 ms per cycle, 10 s apart.
         bench.inputs.battery_mv = Some(4_399);
         bench.run(5 * TICK);
         bench.inputs.battery_mv = Some(5_000);
@@ -73,7 +73,7 @@ fn r8_no_divider_is_never_low() {
     bench.done(ARM);
 }
 
-/// A brain that starts after a reset, with what was kept.
+/// Returns a brain after a reset with this stored word.
 fn restarted(kept: u32, reset_reason: ResetReason) -> Bench {
     let boot = Boot {
         reset_reason,
@@ -128,8 +128,7 @@ fn r6_a_reset_restarts_nothing_and_an_estop_survives_it() {
     }
 }
 
-/// The shell keeps the word before it sends the answer: an e-stop that was acknowledged is not lost with a reset that comes
-/// before the next tick.
+/// The shell stores the word before it sends the reply: a reset before the next tick does not lose an acknowledged e-stop.
 #[test]
 fn r6_an_estop_is_in_the_word_to_keep_before_its_answer_is_sent() {
     let mut bench = Bench::new();
@@ -171,7 +170,7 @@ fn r8_three_resets_in_a_minute_refuse_arming_until_cleared() {
     bench.done(ARM);
 }
 
-/// Every kind of event that is no arm.
+/// Sends a random event other than an arm.
 fn disturb(bench: &mut Bench, random: &mut ChaCha8Rng) {
     let requests = [
         play(0, 5_000_000),
@@ -225,7 +224,7 @@ fn r6_no_path_from_a_latched_stop_to_motion_without_an_arm() {
     let mut stops = [0; 2];
     for run in 0..300 {
         let mut bench = Bench::playing(&circle(1.2), play(0, 5_000_000));
-        // Any way into a latched stop.
+        // Enters a latched stop in a random way.
         for _ in 0..random.random_range(0..6) {
             disturb(&mut bench, &mut random);
             bench.tick();
@@ -242,7 +241,7 @@ fn r6_no_path_from_a_latched_stop_to_motion_without_an_arm() {
             "{stopped:?}"
         );
         stops[usize::from(stopped == StateName::EStopped)] += 1;
-        // And no way out of it but an arm.
+        // Nothing but an arm leaves it.
         for _ in 0..40 {
             disturb(&mut bench, &mut random);
             let ticks = random.random_range(1..30);

@@ -1,4 +1,4 @@
-//! A gait from upload to its last cycle (promise R15), pause and resume, the swap of tables, every refusal on the way.
+//! A gait from upload to its last cycle (promise R15), pause and resume, the swap of tables, and every refusal on the way.
 #![allow(clippy::float_cmp)] // set-points are compared to the last bit
 use crate::bench;
 
@@ -46,14 +46,14 @@ fn three_cycles_from_upload_to_rest() {
     );
     assert_eq!(bench.output.setpoint, first);
     let to_rest = bench.until(StateName::Stopped, 2 * SECOND);
-    // 0.849 rad at 3.5 rad/s, to whole ticks, then half a second.
+    // 0.849 rad at 3.5 rad/s, rounded to ticks, then half a second.
     assert_eq!(to_rest, 260_000 + 500_000);
     assert_eq!(
         (bench.output.pulses_ns, bench.output.setpoint),
         (None, [0.0; 2])
     );
     assert_eq!(bench.now_us - start, 15 * SECOND + to_rest);
-    // It is over: nothing starts again.
+    // The play is over, and nothing starts again.
     assert_eq!(bench.refused(play(1, 5_000_000)), Refusal::NotArmed);
     bench.done(ARM);
     bench.done(play(1, 5_000_000));
@@ -62,7 +62,7 @@ fn three_cycles_from_upload_to_rest() {
 #[test]
 fn r15_the_commanded_angles_are_the_tables_and_an_hour_does_not_drift() {
     let amplitude = 1.9_f64;
-    // A period that no tick divides.
+    // A period that is not a multiple of a tick.
     let period_us = 4_999_999;
     let mut bench = Bench::playing(&circle(amplitude), play(0, period_us));
     let map = gait_player::servo::ServoMap::ROBOT;
@@ -137,7 +137,7 @@ fn telemetry_tells_and_stays_below_five_kilobytes_a_second() {
         .find(|telemetry| telemetry.robot_us >= start + 5 * SECOND)
         .unwrap();
     assert!((f64::from(at.phase) / 65_536.0 - 0.5).abs() < 0.01);
-    // Nothing is sent while the radio is not connected, nor what waited then.
+    // While the radio is disconnected nothing is sent, and pending bytes are dropped.
     bench.inputs.link_up = false;
     let before = bench.bytes_out;
     bench.keep_alive = false;
@@ -154,7 +154,7 @@ fn the_predicted_pose_is_the_models() {
     let mut bench = Bench::playing(&circle(amplitude), play(2, 30_000_000));
     let end = bench.now_us + 30 * SECOND;
     bench.run(31 * SECOND);
-    // Telemetry comes every other tick: take the middle where the cycle ends between two.
+    // Telemetry comes every other tick; the mean is used if the cycle ends between two frames.
     let near: Vec<Pose> = (bench.telemetry.iter())
         .filter(|telemetry| telemetry.robot_us.abs_diff(end) <= u64::from(TICK_US))
         .map(|telemetry| telemetry.pose)
@@ -253,7 +253,7 @@ fn a_swap_waits_for_the_end_of_the_cycle_and_goes_by_a_ramp() {
     assert_eq!(bench.status().table.unwrap().crc32, old.crc32());
     bench.until(StateName::Starting, 5 * SECOND);
     let at_swap = bench.output.setpoint;
-    // The way was checked from the old gait's first knot: the ramp starts there, not in the tick before.
+    // The route was checked from the old gait's first knot, so the ramp starts there, not in the tick before.
     assert!((0..2).all(|joint| (at_swap[joint] - old.knot_angles(0)[joint]).abs() < 1e-4));
     let status = bench.status();
     assert_eq!(
@@ -264,11 +264,11 @@ fn a_swap_waits_for_the_end_of_the_cycle_and_goes_by_a_ramp() {
     assert!(
         (0..2).all(|joint| (bench.output.setpoint[joint] - new.knot_angles(0)[joint]).abs() < 1e-6)
     );
-    // Two whole cycles of the new one.
+    // Two whole cycles of the new table.
     assert_eq!(bench.until(StateName::Stopping, 11 * SECOND), 10 * SECOND);
 }
 
-/// Cycles that were done before the swap stay done.
+/// Cycles finished before the swap stay counted.
 #[test]
 fn a_swap_in_a_later_cycle_waits_for_the_end_of_that_one_and_counts_on() {
     let period = 10 * SECOND;
@@ -285,7 +285,7 @@ fn a_swap_in_a_later_cycle_waits_for_the_end_of_that_one_and_counts_on() {
     assert_eq!((status.cycle, status.cycles), (4, 4));
 }
 
-/// The tick in which the ramp is over is the first of the play: none is lost at the first knot.
+/// The tick in which the ramp ends is the first of the play, so no tick is lost at the first knot.
 #[test]
 fn a_start_takes_its_ramp_and_not_a_tick_more() {
     let mut bench = Bench::new();
@@ -295,7 +295,7 @@ fn a_start_takes_its_ramp_and_not_a_tick_more() {
     bench.tick();
     let ramp = Ramp::soft([0.0; 2], table.knot_angles(0), false, &Limits::ROBOT);
     bench.done(play(1, 5_000_000));
-    // It begins to move in the very tick that accepts it.
+    // The motion begins in the tick that accepts the play.
     assert_eq!(bench.output.state, StateName::Starting);
     let left = bench.until(StateName::Playing, 2 * SECOND);
     assert_eq!(left + u64::from(TICK_US), u64::from(ramp.duration_us()));
@@ -353,7 +353,7 @@ fn ticks_that_are_left_out_are_counted_each_gap_once() {
     let late = |bench: &Bench| bench.brain.counters().late_ticks;
     bench.run(SECOND);
     assert_eq!(late(&bench), 0);
-    // A tick that comes within its period is none of them; a second call in the same period is none either.
+    // A tick within its period is not late, and neither is a second call in the same period.
     bench.now_us += 9_000;
     bench.brain.tick(bench.now_us, &bench.inputs);
     bench.now_us += 11_000;

@@ -1,9 +1,9 @@
-//! The predicted path against what the brain itself does to the same servos: one truth, two roads.
+//! The predicted path against the brain's own pulses on the same servos.
 #![allow(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
     clippy::needless_range_loop
-)] // times are small; joints are two
+)] // times are small; there are two joints
 use crate::bench;
 
 use bench::*;
@@ -31,7 +31,7 @@ fn path(table: &GaitTable, period_us: u32, plant: PlantParameters, cycle: u32) -
     points
 }
 
-/// Angles at a time, between the vertices.
+/// Angles at a time, interpolated between the vertices.
 fn at(points: &[PlayedPoint], time_s: f64) -> [f64; 2] {
     let next = points
         .partition_point(|point| point.time_s < time_s)
@@ -48,7 +48,7 @@ fn at(points: &[PlayedPoint], time_s: f64) -> [f64; 2] {
 #[test]
 fn the_path_is_what_the_brains_pulses_make_of_the_same_servos() {
     let table = circle(1.2);
-    // No tick divides this period: cycles start in the middle of ticks.
+    // This period is not a multiple of a tick, so cycles start within ticks.
     let period_us = 4_990_001;
     let predicted = [0, 1, 2].map(|cycle| path(&table, period_us, SERVO, cycle));
     let mut bench = Bench::new();
@@ -93,7 +93,7 @@ fn the_path_is_what_the_brains_pulses_make_of_the_same_servos() {
 fn ideal_servos_go_where_the_table_goes() {
     let table = circle(1.2);
     for point in path(&table, 5_000_000, PlantParameters::IDEAL, 1) {
-        // A command is held for a tick: the angle is that of the table at the tick's start.
+        // A command is held for a tick, so the angle is that of the table at the tick's start.
         let phase = table.phase((point.time_s * 1e6).round() as u32, 5_000_000);
         let shape = table.at(phase).angles;
         for joint in 0..2 {
@@ -125,7 +125,7 @@ fn a_cycle_is_visited_from_start_to_end_in_order() {
                 .windows(2)
                 .all(|pair| pair[0].time_s <= pair[1].time_s)
         );
-        // No piece is faster than the servo.
+        // No piece exceeds the servo's rate.
         for pair in points.windows(2) {
             let seconds = pair[1].time_s - pair[0].time_s;
             let step = (0..2).fold(0.0_f64, |most, joint| {
@@ -159,7 +159,7 @@ fn the_dead_band_takes_its_share_of_the_amplitude_and_cycles_repeat() {
         worst.max((a[0] - b[0]).abs()).max((a[1] - b[1]).abs())
     });
     assert!(worst < 1e-9, "{worst}");
-    // The first cycle starts where the soft start left the servos.
+    // The first cycle starts at the end of the soft start.
     let first = path(&table, period_us, plant, 0)[0].angles;
     assert!(
         (first[0] - (0.5 * 0.5_f64.sqrt() - 0.05)).abs() < 2e-3,

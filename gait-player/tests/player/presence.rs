@@ -1,4 +1,4 @@
-//! Presence: the settings that need somebody at the robot, and who that is.
+//! Presence: the settings that require a person at the robot, and the ways to prove presence.
 use crate::bench;
 
 use bench::*;
@@ -20,7 +20,7 @@ fn configured(change: impl Fn(&mut Configuration)) -> Request {
     Request::Configure(wanted)
 }
 
-/// `square:2.3`: its corners bring the side links of the robot across each other.
+/// `square:2.3`: at its corners the side links of the robot cross.
 fn square() -> GaitTable {
     GaitTable::from_fn(64, |u| {
         let side =
@@ -38,7 +38,7 @@ fn the_crossing_check_cannot_be_talked_away_from_across_the_room() {
     assert!(crosses(bench.commit(&square())));
     assert_eq!(bench.refused(far()), Refusal::NeedsPresence);
     assert!(crosses(bench.commit(&square())));
-    // At the robot it can: nine metres between the joints are a robot of its owner's.
+    // With presence it is allowed: an owner may build a robot with nine metres between the joints.
     bench.come_near();
     bench.done(far());
     assert!(matches!(bench.commit(&square()), Reply::Table(Some(_))));
@@ -60,7 +60,7 @@ fn a_tenth_of_a_length_is_anybodys_and_what_holds_is_no_change() {
             assert_eq!(bench.refused(wanted), Refusal::NeedsPresence, "{share}");
         }
     }
-    // Drag moves nothing but the pose that is reckoned.
+    // Drag affects only the estimated pose.
     bench.done(configured(|wanted| wanted.chi = 2.0));
     bench.come_near();
     bench.done(configured(|wanted| wanted.front_m *= 1.5));
@@ -104,7 +104,7 @@ fn a_first_key_needs_presence_and_the_window_is_two_minutes_long() {
     );
     let flags = |bench: &mut Bench| bench.status().flags.contains(Flags::PRESENT);
     assert!(!flags(&mut bench));
-    // The jumper closes, and is forgotten there.
+    // The jumper closes and is forgotten there.
     bench.inputs.present = true;
     bench.run(SECOND);
     let Reply::Bench(told) = bench.ask(Request::Bench) else {
@@ -151,13 +151,13 @@ fn the_boot_loader_is_entered_only_stopped_and_with_presence_and_after_the_answe
     bench.until(StateName::Stopped, SECOND);
     assert!(!bench.output.boot_loader);
     bench.done(Request::EnterBootLoader);
-    // Not before its answer has left and all is stored: the count of starts, which it clears.
+    // Not before the reply is sent and everything is stored, including the cleared count of starts.
     assert!(bench.run(SECOND).iter().all(|output| !output.boot_loader));
     let mut flash = gait_player::storage::MemoryStorage::erased();
     bench.brain.serve_storage(bench.now_us, &mut flash).unwrap();
     assert!(bench.tick().boot_loader);
     assert_eq!(flash.starts, Some(ShortStarts { runs: 0 }.encode()));
-    // Whoever arms instead, stays.
+    // An arm cancels the jump.
     bench.done(ARM);
     assert!(!bench.tick().boot_loader);
     bench.done(Request::Stop);
@@ -186,7 +186,7 @@ fn an_estop_is_cleared_without_arming() {
     );
 }
 
-/// A clear that was sent before another e-stop does not clear that one, and none acts from a host that is silent.
+/// A clear that was sent before another e-stop does not clear that one, and a clear of a silent host has no effect.
 #[test]
 fn a_clear_names_the_estops_that_it_clears() {
     let mut bench = at(Transport::Uart);
@@ -205,7 +205,7 @@ fn a_clear_names_the_estops_that_it_clears() {
     assert_eq!(bench.tick().state, StateName::Stopped);
 }
 
-/// The attack: the shape (2.1, 2.1), whose links cross, written as (2.1, −2.1) for a servo that turns the other way.
+/// Attack: the shape (2.1, 2.1), at which links cross, written as (2.1, −2.1) for a reversed servo.
 #[test]
 fn the_direction_of_a_servo_is_set_at_the_robot() {
     let mut bench = at(Transport::Uart);
@@ -219,7 +219,7 @@ fn the_direction_of_a_servo_is_set_at_the_robot() {
     assert_eq!(bench.refused(reversed.clone()), Refusal::NeedsPresence);
     bench.come_near();
     bench.done(reversed.clone());
-    // What holds needs nobody; the way back does.
+    // Repeating the present value requires no presence; reverting it does.
     bench.run(121 * SECOND);
     bench.done(reversed);
     let back = Request::SetServo {
@@ -229,7 +229,7 @@ fn the_direction_of_a_servo_is_set_at_the_robot() {
     assert_eq!(bench.refused(back), Refusal::NeedsPresence);
 }
 
-/// The attack: 20 µs of centre and half a radian of trim move a joint by 1.05 rad, beyond π where 2.8 rad are commanded.
+/// Attack: 20 µs of centre and half a radian of trim move a joint by 1.05 rad, beyond π at a command of 2.8 rad.
 #[test]
 fn centre_and_trim_move_a_joint_by_a_degree_without_presence() {
     let degree = 1_f32.to_radians();
@@ -247,7 +247,7 @@ fn centre_and_trim_move_a_joint_by_a_degree_without_presence() {
             centre_ns: built.centre_ns.saturating_add_signed(centre),
             ..built
         };
-        // In small steps: each is measured from the bench, not from the one before.
+        // In small steps: each is measured from the bench value, not from the previous step.
         for share in 1..=20 {
             let settings = ServoSettings {
                 centre_ns: built.centre_ns.saturating_add_signed(centre * share / 20),
@@ -264,7 +264,7 @@ fn centre_and_trim_move_a_joint_by_a_degree_without_presence() {
             let moved = gait_player::servo::ServoMap::ROBOT.angle(map.pulse_ns(0.0));
             assert!(moved.abs() <= degree + 1e-4, "{steps:?}: {moved} rad");
         }
-        // At the robot the whole is accepted, and later steps are measured from there.
+        // With presence the whole change is accepted, and later steps are measured from it.
         bench.come_near();
         let joint = Joint::Back;
         bench.done(Request::SetServo { joint, settings });
@@ -278,7 +278,7 @@ fn centre_and_trim_move_a_joint_by_a_degree_without_presence() {
     }
 }
 
-/// Of the maps as they were set with presence, those are measured after a restart, too.
+/// After a restart too, changes are measured from the maps set with presence.
 #[test]
 fn the_bench_is_remembered_over_a_restart() {
     let mut flash = gait_player::storage::MemoryStorage::erased();
@@ -301,7 +301,7 @@ fn the_bench_is_remembered_over_a_restart() {
     assert_eq!(bench.refused(trim(0)), Refusal::NeedsPresence);
 }
 
-/// Settings from a host that has been silent do nothing, nor does a clear of the latch of resets.
+/// Settings of a silent host have no effect, nor has a clear of the reset latch.
 #[test]
 fn settings_of_a_silent_host_do_nothing() {
     let mut bench = at(Transport::Usb);
@@ -396,7 +396,7 @@ fn a_servos_end_stops_bound_its_pulses_and_the_gaits() {
     ));
     bench.done(Request::Stop);
     bench.until(StateName::Stopped, SECOND);
-    // It is stored, and loosened by nothing but itself.
+    // The range is stored, and only another range request changes it.
     let mut flash = gait_player::storage::MemoryStorage::erased();
     for _ in 0..20 {
         bench.tick();
@@ -425,7 +425,7 @@ fn a_servos_end_stops_bound_its_pulses_and_the_gaits() {
     bench.done(play(1, 8_000_000));
 }
 
-/// A supply that breaks down under the servos looks like a switch to the chip: only counting shows it (R8).
+/// A supply that collapses under the servos looks like a switch to the chip; only a counter reveals it (promise R8).
 #[test]
 fn r8_three_short_runs_lock_arming_whether_power_was_off_or_not() {
     for power_off in [true, false] {
@@ -473,7 +473,7 @@ fn r8_three_short_runs_lock_arming_whether_power_was_off_or_not() {
         assert_eq!(bench.refused(ARM), Refusal::ResetLoop { wait_s: 0 });
         bench.done(Request::ClearResets);
         bench.done(ARM);
-        // Stored once stopped, so that the next start follows a run that lasted.
+        // Stored once stopped, so that the next start follows a run of full length.
         assert!(!bench.tick().storage_wanted);
         bench.done(Request::Stop);
         bench.until(StateName::Stopped, SECOND);

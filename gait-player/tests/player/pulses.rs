@@ -1,5 +1,5 @@
-//! Promise R4 through the whole brain: whatever comes over the link, out of storage or from the clock, no pulse leaves
-//! the window and no step exceeds the slew limit while pulses are on.
+//! Promise R4 for the whole brain: for any input from link, storage or clock, no pulse leaves the window, and no step exceeds
+//! the slew limit while pulses are on.
 use crate::bench;
 
 use bench::*;
@@ -9,7 +9,7 @@ use link_protocol::*;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Holds the pulses of every tick against the limits.
+/// Checks the pulses of every tick against the limits.
 struct Witness {
     last: Option<[u32; 2]>,
     powered: u64,
@@ -26,7 +26,7 @@ impl Witness {
     fn see(&mut self, output: &Output, limits: &Limits) {
         if let (Some(last), Some(pulses)) = (self.last, output.pulses_ns) {
             for joint in 0..2 {
-                // By the servos as built, a tenth flatter at most: not by the slope that somebody told the robot.
+                // The slope as built, at most a tenth flatter; not the configured slope.
                 let step = f64::from(limits.max_rate) * 0.02 / (0.9 * 0.0274) * 1000.0;
                 let moved = f64::from(pulses[joint].abs_diff(last[joint]));
                 assert!(moved <= step.ceil(), "step of {moved} ns, {step} allowed");
@@ -44,7 +44,7 @@ impl Witness {
     }
 }
 
-/// Numbers as a broken host or a broken flash would have them: good ones, wild ones, and no numbers.
+/// Values of a broken host or flash: valid, extreme, or NaN.
 fn wild(random: &mut ChaCha8Rng, good: f32) -> f32 {
     match random.random_range(0..8) {
         0 => f32::from_bits(random.random()),
@@ -92,7 +92,7 @@ fn servo(random: &mut ChaCha8Rng) -> ServoSettings {
     }
 }
 
-/// Memory that came with the wrong robot.
+/// Storage with another robot's content.
 struct WildStorage {
     random: ChaCha8Rng,
     settings: Vec<u8>,
@@ -160,7 +160,7 @@ impl Storage for WildStorage {
     fn load_settings(&mut self, bytes: &mut [u8; MAX_SETTINGS]) -> Result<Option<usize>, ()> {
         let len = self.settings.len().min(MAX_SETTINGS);
         bytes[..len].copy_from_slice(&self.settings[..len]);
-        // A length that no record has is an answer too.
+        // A length that no record has is possible too.
         Ok(Some(if self.random.random_ratio(1, 20) {
             usize::MAX
         } else {
@@ -235,7 +235,7 @@ fn request(random: &mut ChaCha8Rng, upload: u16) -> Request {
     }
 }
 
-/// A small table that a random commit can bring home.
+/// A small table that a random commit can complete.
 fn table(random: &mut ChaCha8Rng) -> gait_player::GaitTable {
     let amplitude = random.random_range(0.05..2.5);
     let knots = random.random_range(2..40);

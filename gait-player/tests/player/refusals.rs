@@ -1,4 +1,4 @@
-//! Refusals of the brain, their numbers, and that a refusal changes nothing: plays, uploads, tables, configurations, trims.
+//! Refusals of the brain and their numbers. A refusal changes nothing: plays, uploads, tables, configurations, trims.
 #![allow(clippy::float_cmp)] // limits are compared to the last bit
 use crate::bench;
 
@@ -29,7 +29,7 @@ fn every_refusal_of_a_play() {
         bench.refused(play(1, 2_000_000)),
         Refusal::RateLimit { .. }
     ));
-    // R17: the robot plays only the table and the settings that its host checked.
+    // Promise R17: the robot plays only the table, with the settings, that its host checked.
     let held = bench.brain.held();
     let checked = |checked| {
         Request::Play(Play {
@@ -59,7 +59,7 @@ fn every_refusal_of_a_play() {
         }
     );
     assert_eq!(bench.output.state, StateName::Holding);
-    // A trim by another program between check and play.
+    // Another program sets a trim between check and play.
     bench.done(Request::Trim {
         joint: Joint::Back,
         trim: 1,
@@ -121,7 +121,7 @@ fn every_refusal_of_an_upload() {
         bench.refused(chunk(upload, 8, 9)),
         Refusal::ChunkOutOfRange { wanted: 0 }
     );
-    // Behind a gap: told what is wanted. Overlapping: only what is new counts.
+    // A chunk after a gap gets the expected offset; of an overlapping chunk only the new bytes count.
     assert_eq!(
         bench.ask(chunk(upload, 8, 8)),
         Reply::Wanted { upload, offset: 0 }
@@ -143,7 +143,7 @@ fn every_refusal_of_an_upload() {
         Refusal::Incomplete { wanted: 10 }
     );
     assert_eq!(bench.status().upload, Some(10));
-    // Another session resumes by the same length and checksum, under a new number.
+    // Another session resumes by length and checksum, under a new number.
     bench.greet(2);
     bench.sequence = 500;
     assert_eq!(
@@ -276,7 +276,7 @@ fn a_configuration_tightens_limits_and_is_held_against_the_active_table() {
         change(&mut wanted);
         Request::Configure(wanted)
     };
-    // Field by field; nothing that is refused changes anything.
+    // Field by field; a refused value changes nothing.
     bench.come_near();
     let bad: [(u8, Change); 9] = [
         (0, |c| c.middle_m = f32::NAN),
@@ -304,7 +304,7 @@ fn a_configuration_tightens_limits_and_is_held_against_the_active_table() {
         bench.ask(Request::Configuration),
         Reply::Configuration(robot)
     );
-    // Smaller limits: the active table is refused before any pulse, and says by how much.
+    // Under smaller limits the active table is refused before any pulse, with the excess in the reply.
     bench.done(with(|c| c.max_angle = 1.0));
     assert_eq!(bench.greet(9).limits.max_angle, 1.0);
     bench.done(ARM);
@@ -319,14 +319,14 @@ fn a_configuration_tightens_limits_and_is_held_against_the_active_table() {
     );
     bench.done(Request::Stop);
     bench.until(StateName::Stopped, 2 * SECOND);
-    // Another geometry: a gait that crossed no links may do so now.
+    // In another geometry the links of a valid gait may cross.
     bench.done(with(|c| {
         c.middle_m = 0.03;
         c.front_m = 0.3;
         c.back_m = 0.3;
         c.max_angle = 2.8;
     }));
-    // It begins at neutral, where the servos are: no way to it can cross.
+    // The gait begins at neutral, where the servos are, so the route cannot cross.
     let long = GaitTable::from_fn(512, |u| [1.7 * (std::f64::consts::TAU * u).sin(); 2]).unwrap();
     let reply = bench.commit(&long);
     assert!(
@@ -425,7 +425,7 @@ fn trim_moves_the_pulse_not_the_setpoint_and_not_faster_than_allowed() {
     }
 }
 
-/// What the robot takes a pulse to mean is what makes a step slow or fast: settings for servos of another kind are refused.
+/// The slope converts a rate into pulse steps, so settings of another servo type are refused.
 #[test]
 fn a_servo_may_be_set_up_as_one_of_its_kind_only() {
     let mut bench = Bench::new();
@@ -484,7 +484,7 @@ fn a_trim_may_put_a_joint_at_its_limit_and_not_beyond() {
     }
 }
 
-/// What is being checked must not change, and nothing may overtake its answer: table, configuration, servos and plays wait.
+/// During a check, requests that affect it are refused as busy: uploads, configuration, servos, key and plays.
 #[test]
 fn while_a_table_is_checked_nothing_that_hangs_on_it_begins() {
     let mut bench = Bench::new();
@@ -509,7 +509,7 @@ fn while_a_table_is_checked_nothing_that_hangs_on_it_begins() {
             "{request:?}"
         );
     }
-    // Neither lost its answer by them: the table is checked and taken.
+    // The original request still gets its reply: the table is checked and accepted.
     bench.sequence = commit + 4;
     bench.run(4 * SECOND);
     let taken = |(header, reply): &(Header, Reply)| {

@@ -1,5 +1,4 @@
-//! Promise R10 and the rules of sessions: duplicated, reordered and late requests act at most once; Stop and e-stop act
-//! always.
+//! Promise R10 and the rules of sessions: duplicated, reordered and late requests act at most once. Stop and e-stop always act.
 use crate::bench;
 
 use bench::*;
@@ -42,7 +41,7 @@ fn nothing_but_stops_acts_without_the_open_session() {
     assert_eq!(counters(&mut bench).stale, 12);
 }
 
-/// Greetings are short and their answers long: a flood of them leaves no room for any other answer.
+/// Greetings are short and their replies long, so a flood of them fills the transmit buffer.
 #[test]
 fn a_stop_is_answered_in_a_flood_that_drowns_all_other_answers() {
     let mut bench = Bench::playing(&circle(1.2), play(0, 5_000_000));
@@ -98,7 +97,7 @@ fn stops_act_whatever_their_session_and_number() {
             assert_eq!(bench.output.state, expected);
         }
     }
-    // Before any greeting too, and signed.
+    // Also before any greeting, and signed.
     let mut bench = Bench::with(config());
     let mut frame = [0; MAX_ENCODED];
     let mut body = [0; MAX_BODY];
@@ -138,7 +137,7 @@ fn a_stop_supersedes_the_requests_before_it() {
     );
     bench.run(SECOND);
     assert_eq!(bench.output.state, StateName::Stopped);
-    // A late stop of the same session stops too, but takes nobody's place.
+    // A late stop of the same session acts too, but takes no number in the order.
     bench.done(ARM);
     let arm = bench.sequence;
     assert_eq!(bench.send_request(stop, Request::Stop), Some(Reply::Done));
@@ -154,7 +153,7 @@ fn a_stop_cancels_a_play_that_waits_for_its_check() {
     bench.done(ARM);
     let sequence = bench.sequence + 1;
     assert_eq!(bench.send_request(sequence, play(1, 5_000_000)), None);
-    // Asked again meanwhile, it says so.
+    // A repeat during the check gets the interim reply.
     assert_eq!(
         bench.send_request(sequence, play(1, 5_000_000)),
         Some(Reply::Working)
@@ -171,7 +170,7 @@ fn what_a_stop_from_elsewhere_cancels_is_answered_and_not_worked_at_for_ever() {
     bench.upload(&circle(1.2));
     bench.done(ARM);
     let stranger = Header::new(0, 9);
-    // A play, stopped by another program: it was answered, and its repeat hears the same.
+    // A play that another program stops: it was answered, and its repeat gets the same reply.
     let sequence = bench.sequence + 1;
     assert_eq!(bench.send_request(sequence, play(1, 5_000_000)), None);
     bench.send(stranger, &Message::Request(Request::Stop));
@@ -183,7 +182,7 @@ fn what_a_stop_from_elsewhere_cancels_is_answered_and_not_worked_at_for_ever() {
         Some(refused)
     );
     bench.sequence = sequence;
-    // A commit: it may be asked again.
+    // A commit may be repeated.
     let table = circle(1.1);
     let upload = bench.send_table(&table);
     bench.until(StateName::Stopped, 2 * SECOND);
@@ -255,12 +254,12 @@ fn r10_duplicated_reordered_and_late_requests_act_at_most_once() {
     for _ in 0..400 {
         let mut bench = Bench::new();
         let base: u16 = random.random();
-        // Each request sets a trim of its own, so that who acted can be told afterwards.
+        // Each request sets a different trim, which identifies the request that acted.
         let count = random.random_range(2..12_u16);
         let mut deliveries: Vec<u16> = (0..count)
             .flat_map(|index| vec![index; random.random_range(0..4)])
             .collect();
-        // Reordered within a window; some come late.
+        // Reordered within a window; some arrive late.
         for start in (0..deliveries.len()).step_by(3) {
             let end = (start + 5).min(deliveries.len());
             deliveries[start..end].shuffle(&mut random);
@@ -298,7 +297,7 @@ fn r10_duplicated_reordered_and_late_requests_act_at_most_once() {
                 .count()
         };
         bench.sequence = base.wrapping_add(count);
-        // Greeting and this very question aside, each acted once.
+        // Except for the greeting and the status request, each acted once.
         assert_eq!(counters(&mut bench).acted as usize, distinct);
         let Reply::Servo(servo) = bench.ask(Request::Servo(Joint::Front)) else {
             panic!()
@@ -324,7 +323,7 @@ fn greetings_open_sessions_and_change_no_state() {
     assert_eq!(second.schema_key, SCHEMA_KEY);
     bench.tick();
     assert_eq!(bench.output.state, StateName::Playing);
-    // An old greeting that the radio held back opens one more; the host is refused with StaleSession and greets again.
+    // A delayed old greeting opens another session. The host is refused with StaleSession and greets again.
     assert_eq!(bench.greet(1).session, first + 2);
 }
 
@@ -342,7 +341,7 @@ fn a_host_of_another_version_is_told() {
     for (min, current, opens) in [
         (0x11, 0x19, false),
         (0, 0, false),
-        // The builds before the first release.
+        // Versions before the first release.
         (1, 2, false),
         (0x10, 0x10, true),
         (0x10, 0x19, true),

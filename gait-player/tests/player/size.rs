@@ -1,4 +1,4 @@
-//! Promise R13, the brain's share: it fits a small corner of 96 KiB.
+//! Promise R13, the brain's part: its size is a small share of 96 KiB.
 
 #[test]
 fn the_brain_is_small() {

@@ -1,5 +1,5 @@
-//! Promise R9, second half: a power cut at any byte of a store leaves the old table or the new one, never a mix; and
-//! settings and tables come back after a restart.
+//! Promise R9, second half: a power cut at any byte of a store leaves the old table or the new one, never a mix. Settings and
+//! tables are restored after a restart.
 use crate::bench;
 
 use bench::*;
@@ -7,17 +7,17 @@ use gait_player::storage::{MAX_SETTINGS, PAGE, SLOT_PAGES, SLOTS, Storage};
 use gait_player::{Brain, GaitTable, ShortStarts};
 use link_protocol::*;
 
-/// NOR flash that loses power after so many bytes: what it was at is done up to there, nothing after.
+/// NOR flash that loses power after a number of bytes: the current operation stops there.
 #[derive(Clone)]
 struct Flash {
     slots: [Vec<u8>; SLOTS],
     settings: Option<Vec<u8>>,
     starts: Option<[u8; ShortStarts::LEN]>,
-    /// The settings' own store refuses to write.
+    /// Writes of the settings fail.
     settings_broken: bool,
-    /// It cannot be read either.
+    /// Reads of the settings fail.
     settings_unreadable: bool,
-    /// This slot cannot be read.
+    /// Slot whose reads fail.
     unreadable: Option<usize>,
     /// Bytes until the power is cut.
     left: usize,
@@ -96,13 +96,13 @@ impl Storage for Flash {
     }
 
     fn save_starts(&mut self, bytes: &[u8; ShortStarts::LEN]) -> Result<(), PowerCut> {
-        // Old or new, in a part of its own.
+        // Atomic: a separate part of the flash.
         self.starts = Some(*bytes);
         Ok(())
     }
 
     fn save_settings(&mut self, bytes: &[u8]) -> Result<(), PowerCut> {
-        // Old or new: the record's own store sees to that.
+        // Atomic: the settings have a store of their own.
         self.spend()?;
         if self.settings_broken {
             return Err(PowerCut);
@@ -113,7 +113,7 @@ impl Storage for Flash {
     }
 }
 
-/// A start after a run that was not short.
+/// Starts the robot after a run of full length.
 fn boot(flash: &mut Flash) -> Bench {
     flash.starts = None;
     let mut brain = Brain::new(config());
@@ -123,9 +123,9 @@ fn boot(flash: &mut Flash) -> Bench {
     bench
 }
 
-/// Serves the storage until nothing is left to do or the power is cut.
+/// Serves the storage until nothing is left to do, or the power is cut.
 fn serve(bench: &mut Bench, flash: &mut Flash) -> Result<(), PowerCut> {
-    // Settings, an erase, eight pages of table, the header; and as much again.
+    // Settings, an erase, eight pages of table, the header; twice.
     for _ in 0..24 {
         if !bench.tick().storage_wanted {
             return Ok(());
@@ -160,7 +160,7 @@ fn a_table_comes_back_after_a_restart_and_plays() {
     bench.done(ARM);
     bench.done(play(1, 5_000_000));
     bench.until(StateName::Playing, 2 * SECOND);
-    // Its knots, not only its name.
+    // The knots are compared too, not only the checksum.
     let first = circle(0.9).knot_angles(0);
     assert!((0..2).all(|joint| (bench.output.setpoint[joint] - first[joint]).abs() < 1e-6));
 }
@@ -200,7 +200,7 @@ fn r9_a_power_cut_at_any_byte_leaves_the_old_table_or_the_new_one() {
     );
     let mut flash = Flash::new();
     let mut bench = boot(&mut flash);
-    // Both slots in use, so that an older table is being overwritten.
+    // Both slots are in use, so an older table is overwritten.
     for table in [&new, &old] {
         bench.upload(table);
         serve(&mut bench, &mut flash).unwrap();
@@ -229,7 +229,7 @@ fn r9_a_power_cut_at_any_byte_leaves_the_old_table_or_the_new_one() {
         assert!(is_new || crc32 == old.crc32(), "a mix after {cut} bytes");
         seen[usize::from(is_new)] += 1;
         assert_eq!(after.status().state, StateName::Stopped);
-        // And the next upload is stored as if nothing had been.
+        // The next upload is stored normally.
         if cut % 512 == 0 {
             after.upload(&new);
             serve(&mut after, &mut flash).unwrap();
@@ -255,7 +255,7 @@ fn nothing_is_stored_unless_stopped_and_a_failure_is_retried_a_second_later() {
     bench.done(Request::Stop);
     bench.until(StateName::Stopped, SECOND);
     assert!(bench.tick().storage_wanted);
-    // An arm in the middle wins; the table is stored afterwards.
+    // An arm interrupts the store; the table is stored afterwards.
     bench.brain.serve_storage(bench.now_us, &mut flash).unwrap();
     assert!(flash.spent > 0);
     bench.done(ARM);
@@ -336,8 +336,7 @@ fn a_slot_that_cannot_be_read_leaves_the_other_ones_table() {
     }
 }
 
-/// Settings that cannot be read, or read as none that the limits allow: the robot says so until somebody sets it anew,
-/// and that is stored.
+/// Settings that are unreadable, or invalid under the limits, are reported until they are set and stored again.
 #[test]
 fn settings_that_are_lost_are_told_and_set_anew() {
     for unreadable in [true, false] {
@@ -368,7 +367,7 @@ fn settings_that_are_lost_are_told_and_set_anew() {
     }
 }
 
-/// The header of a slot: magic, format, generation, length, CRC of the table, CRC of these.
+/// Header of a slot: magic, format, generation, length, CRC of the table, CRC of these.
 fn header(words: [u32; 5]) -> Vec<u8> {
     let mut bytes: Vec<u8> = words.into_iter().flat_map(u32::to_le_bytes).collect();
     bytes.extend(crc32c(&bytes).to_le_bytes());
@@ -395,7 +394,7 @@ fn a_slot_counts_only_where_every_word_of_its_header_is_right() {
     };
     let whole = Some((table.crc32(), true));
     assert_eq!(loaded(&header(good), table.bytes()), whole);
-    // Another magic, a later format, and lengths that no table has, each with a right checksum.
+    // Another magic, a later format, and invalid lengths, each with a correct checksum.
     for (word, value) in [
         (0, good[0] ^ 1),
         (1, 2),
@@ -409,7 +408,7 @@ fn a_slot_counts_only_where_every_word_of_its_header_is_right() {
         words[word] = value;
         assert_eq!(loaded(&header(words), table.bytes()), None, "{words:?}");
     }
-    // One knot is no table, whatever its checksum; none is none.
+    // Zero knots or one knot form no table, whatever the checksum.
     for len in [0, 4] {
         let (mut words, bytes) = (good, &table.bytes()[..len]);
         (words[3], words[4]) = (u32::try_from(len).unwrap(), crc32c(bytes));

@@ -1,4 +1,4 @@
-//! What the robot shows and tells of itself: its LED, telemetry, counters.
+//! LED, telemetry and counters of the robot.
 use crate::bench;
 
 use bench::stops::*;
@@ -6,7 +6,7 @@ use bench::*;
 use gait_player::Transport;
 use link_protocol::*;
 
-/// How many ticks the LED is on and off in turn, from its next change on.
+/// Durations \[ticks\] of the LED's on and off phases, from the next change on.
 fn blinks(bench: &mut Bench, turns: usize) -> Vec<(bool, usize)> {
     let mut runs: Vec<(bool, usize)> = Vec::new();
     for output in bench.run(20 * SECOND) {
@@ -15,12 +15,12 @@ fn blinks(bench: &mut Bench, turns: usize) -> Vec<(bool, usize)> {
             _ => runs.push((output.led, 1)),
         }
     }
-    // The first and the last run are cut.
+    // The first and the last phase are incomplete.
     runs.pop();
     runs.into_iter().skip(1).take(turns).collect()
 }
 
-/// A pattern \[ticks on, off, on, …\] as [`blinks`] tells it, from any of its changes on.
+/// Compares phases with a pattern \[ticks on, off, on, …\], at any offset.
 fn assert_pattern(told: &[(bool, usize)], pattern: &[usize]) {
     let turned = (0..pattern.len()).step_by(2).any(|turn| {
         let expected = (0..).map(|at| {
@@ -37,11 +37,11 @@ fn the_led_tells_the_states_apart() {
     let mut bench = Bench::new();
     // Stopped: 60 ms every two seconds.
     assert_pattern(&blinks(&mut bench, 8), &[3, 97]);
-    // With a low battery: two blinks a second.
+    // With a low battery: two blinks per second.
     bench.inputs.battery_mv = Some(4_000);
     bench.run(6 * SECOND);
     assert_pattern(&blinks(&mut bench, 16), &[5, 5, 5, 35]);
-    // E-stopped: fast, whatever the battery.
+    // E-stopped: fast, regardless of the battery.
     bench.done(Request::EStop);
     bench.run(SECOND);
     assert_pattern(&blinks(&mut bench, 20), &[5, 5]);
@@ -50,7 +50,7 @@ fn the_led_tells_the_states_apart() {
     bench.done(ARM);
     bench.tick();
     assert!(bench.run(3 * SECOND).iter().all(|output| output.led));
-    // Playing: dark but for the flash at a cycle's start, 100 ms.
+    // Playing: dark except for the flash of 100 ms at a cycle's start.
     let mut bench = Bench::playing(&circle(1.2), play(0, 5_000_000));
     assert_pattern(&blinks(&mut bench, 6), &[5, 245]);
 }
@@ -89,7 +89,7 @@ fn telemetry_and_status_tell_the_set_point_and_the_frames() {
             .setpoint
             .map(|angle| (f64::from(angle) * 1e4).round() as i16)
     };
-    // Telemetry goes out every second tick and tells of its own.
+    // Telemetry is sent every second tick and counts itself.
     let heard = bench.telemetry.len();
     let told: Vec<_> = (0..20)
         .map(|_| {

@@ -1,4 +1,4 @@
-//! Two transports to one robot, and the lease: renewed by fresh keep-alives, and by nothing else.
+//! Two transports to one robot, and the lease: only fresh keep-alives renew it.
 use crate::bench;
 
 use bench::*;
@@ -6,7 +6,7 @@ use gait_player::Transport::{Uart, Usb};
 use gait_player::{Boot, Brain, BrainConfig};
 use link_protocol::*;
 
-/// Holding, with a lease of 460 ms to go.
+/// Returns a robot that holds its pose, with a full lease of 460 ms.
 fn holding() -> Bench {
     let mut bench = Bench::new();
     bench.upload(&circle(1.2));
@@ -16,7 +16,7 @@ fn holding() -> Bench {
     bench
 }
 
-/// Time until the robot stops while `every_tick` happens, µs.
+/// Time until the robot stops while `every_tick` runs, µs.
 fn lives(bench: &mut Bench, mut every_tick: impl FnMut(&mut Bench)) -> u64 {
     let start = bench.now_us;
     while bench.output.state == StateName::Holding {
@@ -43,7 +43,7 @@ fn r5_nothing_but_a_fresh_keep_alive_feeds_the_lease() {
         Box::new(|_| {}),
         Box::new(move |bench| asked(bench, Request::Status)),
         Box::new(move |bench| asked(bench, ARM)),
-        // Too old, and of the future.
+        // Too old, and in the future.
         Box::new(|bench| bench.beat_that_heard(bench.now_us - 1_000_001)),
         Box::new(|bench| bench.beat_that_heard(bench.now_us + 1)),
     ];
@@ -55,7 +55,7 @@ fn r5_nothing_but_a_fresh_keep_alive_feeds_the_lease() {
         bench.done(ARM);
         bench.tick();
     }
-    // A recorded one: fresh by its time for a second, and counted once.
+    // A recorded keep-alive: fresh for a second, and counted once.
     let heard = bench.now_us;
     let took = lives(&mut bench, |bench| bench.beat_that_heard(heard));
     assert!(took <= 500_000, "{took}");
@@ -65,7 +65,7 @@ fn r5_nothing_but_a_fresh_keep_alive_feeds_the_lease() {
 fn r5_a_dead_hosts_queue_feeds_the_lease_for_a_second_at_most() {
     let mut bench = holding();
     bench.greet(7);
-    // Everything that it had heard until it died, each a microsecond later, over a line that never ends.
+    // All robot times up to the host's death, in steps of one microsecond, on an endless link.
     let died = bench.now_us;
     let mut heard = died - 10_000;
     let took = lives(&mut bench, |bench| {
@@ -77,7 +77,7 @@ fn r5_a_dead_hosts_queue_feeds_the_lease_for_a_second_at_most() {
         took / 1000
     );
     assert!((1_400_000..=1_480_000).contains(&took), "{took}");
-    // What it had asked for then does nothing.
+    // Its buffered requests have no effect.
     bench.until(StateName::Stopped, 2 * SECOND);
     for request in [ARM, play(1, 8_000_000), Request::Resume] {
         assert_eq!(bench.refused(request), Refusal::NotFresh);
@@ -88,7 +88,7 @@ fn r5_a_dead_hosts_queue_feeds_the_lease_for_a_second_at_most() {
 #[test]
 fn r5_a_slow_but_living_link_is_no_silence() {
     let mut bench = holding();
-    // A session of its own: the one before was quicker.
+    // A new session, because the previous one had less delay.
     bench.greet(7);
     // 200 ms each way, a lump of 160 ms, 100 ms between keep-alives.
     for tick in 0..1000_u64 {
@@ -103,7 +103,7 @@ fn r5_a_slow_but_living_link_is_no_silence() {
 fn stops_of_any_version_act_and_are_answered_in_it() {
     for version in [0, 1, 2, 0x10, 0x11, 255] {
         for (request, state) in [
-            // It stands at neutral, where a ramp ends as it begins.
+            // The robot is at neutral, where the ramp ends immediately.
             (Request::Stop, StateName::Settling),
             (Request::EStop, StateName::EStopped),
         ] {
@@ -125,7 +125,7 @@ fn stops_of_any_version_act_and_are_answered_in_it() {
 fn whoever_greeted_last_holds_the_session_and_a_stop_is_answered_where_it_came() {
     let mut bench = holding();
     let sequence = bench.sequence;
-    // The radio's session over the cable: not of this session, but for a stop.
+    // The radio's session over the cable is foreign; only its stop acts.
     bench.via = Usb;
     let reply = bench.send_request(sequence + 1, Request::Status);
     assert_eq!(reply, Some(Reply::Refused(Refusal::StaleSession)));
@@ -139,7 +139,7 @@ fn whoever_greeted_last_holds_the_session_and_a_stop_is_answered_where_it_came()
         !bench.telemetry.is_empty(),
         "the radio still has the session"
     );
-    // The cable greets: motion is as it was, the session and the telemetry are the cable's.
+    // The cable greets: the motion continues; session and telemetry move to the cable.
     bench.via = Usb;
     bench.keep_alive = true;
     bench.greet(5);
@@ -163,7 +163,7 @@ fn whoever_greeted_last_holds_the_session_and_a_stop_is_answered_where_it_came()
         before,
         "telemetry on a way without a session"
     );
-    // And the radio takes it back.
+    // The radio takes the session back.
     bench.greet(6);
     bench.beat();
     bench.keep_alive = true;
@@ -261,7 +261,7 @@ fn answers_and_telemetry_of_a_robot_with_a_key_verify_and_count_up() {
         assert!(signature.counter > last);
         last = signature.counter;
     }
-    // Who is turned away is told unsigned: he could not verify it.
+    // A refusal of a foreign frame is unsigned, because its sender could not verify a signature.
     say(&mut bench, Header::new(reply.session, 99), &status, None, 0);
     let (refused, _) = listen(&mut bench.brain).pop().unwrap();
     assert_eq!(refused.signature, None);
@@ -269,7 +269,7 @@ fn answers_and_telemetry_of_a_robot_with_a_key_verify_and_count_up() {
         refused.message,
         Ok(Message::Reply(Reply::Refused(Refusal::KeyNeeded)))
     );
-    // And whoever stops it from outside of the session.
+    // The same for a stop from outside the session.
     let outside = Header::new(0xFFFF, 7);
     let stop = Message::Request(Request::Stop);
     say(&mut bench, outside, &stop, None, 0);
@@ -281,7 +281,7 @@ fn answers_and_telemetry_of_a_robot_with_a_key_verify_and_count_up() {
     assert_eq!(stopped.signature, None);
 }
 
-/// Nothing of this is stored: a start without its storage counts from what the RAM says, or from one.
+/// Without storage, the count of starts comes from the RAM, or begins at one.
 #[test]
 fn a_start_without_storage_is_the_first_short_one() {
     let brain = Brain::new(BrainConfig::robot(IDENTITY, Boot::power_on(1, 1)));

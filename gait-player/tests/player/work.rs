@@ -1,4 +1,4 @@
-//! Checking a table takes longer than a tick: how fast it goes on, and what it does not wait for.
+//! Checks of tables that exceed a tick: their duration, and the requests that need not wait for them.
 use crate::bench;
 
 use bench::*;
@@ -6,7 +6,7 @@ use gait_player::{GaitTable, Transport};
 use link_protocol::*;
 use std::f64::consts::TAU;
 
-/// Ticks from a commit to its answer.
+/// Number of ticks from a commit to its reply.
 fn ticks_to_check(bench: &mut Bench, amplitude: f64) -> usize {
     let upload = bench.send_table(&circle(amplitude));
     bench.sequence += 1;
@@ -33,11 +33,11 @@ fn a_table_is_checked_at_full_pace_while_pulses_are_off_only() {
     bench.done(ARM);
     let on = ticks_to_check(&mut bench, 1.1);
     println!("ticks to check 512 knots: {off} with pulses off, {on} with them on");
-    // 70 units of work a tick against 3.
+    // 70 units of work per tick against 3.
     assert!(off < 25 && on > 20 * off, "{off}, {on}");
 }
 
-/// A gait of this size from a first knot on the diagonal, where the links are near one another.
+/// Gait of this size from a first knot on the diagonal, where the links are close to each other.
 fn from_knot(first: f64, size: f64) -> GaitTable {
     GaitTable::from_fn(64, |u| {
         let angle = TAU * u;
@@ -49,10 +49,10 @@ fn from_knot(first: f64, size: f64) -> GaitTable {
     .unwrap()
 }
 
-/// A way along which the links come near takes many looks, and with pulses on there is one a tick.
+/// A route with a small clearance takes many evaluations, one per tick while pulses are on.
 #[test]
 fn a_way_is_looked_at_once_a_tick_while_pulses_are_on() {
-    // To a first knot, from neutral.
+    // From neutral to a first knot.
     let ticks_to_start = |first: f64| {
         let mut bench = Bench::new();
         bench.upload(&from_knot(first, 0.1));
@@ -64,7 +64,7 @@ fn a_way_is_looked_at_once_a_tick_while_pulses_are_on() {
         ticks.expect("no start within 2 s")
     };
     let (near, far) = (ticks_to_start(1.6), ticks_to_start(0.3));
-    // From the playing gait's first knot to that of the next.
+    // From the playing gait's first knot to that of the next table.
     let ticks_to_swap = |first: f64| {
         let mut bench = Bench::playing(&from_knot(first, 0.1), play(0, 30_000_000));
         let upload = bench.send_table(&from_knot(1.6, 0.2));
@@ -108,7 +108,7 @@ fn a_check_ends_though_nobody_is_heard_any_more() {
     let upload = bench.send_table(&table);
     bench.keep_alive = false;
     bench.run(2 * SECOND);
-    // The frame of the commit opens the lease once more, and then the link is gone for good.
+    // The frame of the commit renews the lease once more; then the link fails for good.
     let commit = bench.sequence + 1;
     assert_eq!(bench.send_request(commit, Request::Commit { upload }), None);
     bench.inputs.link_up = false;

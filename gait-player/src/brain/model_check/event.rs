@@ -6,44 +6,44 @@ use std::vec::Vec;
 
 use ResetReason::{Crash, Pin, PowerOn, Watchdog};
 
-/// Something that happens.
+/// One event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Event {
-    /// A request in the open session, under the next number.
+    /// Request in the open session with the next sequence number.
     Ask(usize),
-    /// The frame of the last request again, byte by byte.
+    /// Byte-exact repeat of the last request's frame.
     Repeat,
-    /// A request under an old number.
+    /// Request with an old sequence number.
     Late(usize),
-    /// A request of a session before.
+    /// Request of an earlier session.
     Foreign(usize),
-    /// A request in the open session without the signature that it asks for.
+    /// Request in the open session without the required signature.
     Unsigned(usize),
-    /// A request under number and signature of the open session, by the other way.
+    /// Request with number and signature of the open session, over the other transport.
     Elsewhere(usize),
-    /// Another host greets, by this way: where the session was of the other one, it takes over.
+    /// Greeting of another host over this transport. It takes over a session of the other transport.
     Greet(Transport),
-    /// The same host greets again.
+    /// Repeated greeting of the same host.
     GreetAgain,
-    /// A keep-alive of a host that has just heard the robot.
+    /// Keep-alive of a host that has just received a frame of the robot.
     KeepAlive,
-    /// The last keep-alive again, byte by byte, and one whose host heard the robot too long ago.
+    /// Byte-exact repeat of the last keep-alive, then one whose host received the robot too long ago.
     OldKeepAlive,
-    /// Somebody closes the bench jumper for a moment.
+    /// The bench jumper closes for a moment.
     Jumper,
-    /// Time passes: ticks, with or without keep-alives.
+    /// Time passes in ticks, with or without keep-alives.
     Pass {
         ticks: u32,
         kept_alive: bool,
     },
-    /// One tick that comes late by so many seconds.
+    /// One tick that comes late by this many seconds.
     Jump(u64),
-    /// The battery has this voltage from now on.
+    /// The battery voltage changes to this value.
     Battery(Option<u16>),
     Reset(ResetReason),
 }
 
-/// Filled in with what the robot holds when the request is sent.
+/// Replaced by the robot's own values when the request is sent.
 pub(super) const FILLED_IN: Checked = Checked {
     table_crc32: 0,
     settings_crc32: 0,
@@ -72,7 +72,7 @@ pub(super) fn requests() -> Vec<Request> {
     };
     let chunk = |table: &GaitTable, from: usize, to: usize| {
         Request::Chunk(Chunk {
-            upload: 0, // filled in when it is sent
+            upload: 0, // replaced when it is sent
             offset: from as u16,
             data: heapless::Vec::from_slice(&table.bytes()[from..to]).unwrap(),
         })
@@ -126,7 +126,7 @@ pub(super) fn requests() -> Vec<Request> {
                 longest_ns: 1_610_000,
             },
         },
-        // Of the e-stops that there were, and of one less.
+        // The current count of e-stops, and a count one too low.
         Request::ClearEStop { count: 0 },
         Request::ClearEStop { count: 1 },
         Request::EnterBootLoader,
@@ -136,7 +136,7 @@ pub(super) fn requests() -> Vec<Request> {
             period_us: 1_000_000,
             checked: FILLED_IN,
         }),
-        // Of another table than the robot's.
+        // A table other than the robot's.
         Request::Play(Play {
             cycles: 2,
             period_us: 1_000_000,
@@ -160,7 +160,7 @@ pub(super) fn requests() -> Vec<Request> {
 pub(super) fn events(requests: &[Request]) -> Vec<Event> {
     let mut events: Vec<_> = (0..requests.len()).map(Event::Ask).collect();
     for (index, request) in requests.iter().enumerate() {
-        // What could move the robot, stop it or open it, from elsewhere, too late or without leave.
+        // Requests that could move, stop or unlock the robot, sent over the wrong transport, too late or without authority.
         if matches!(
             request,
             Request::Arm
@@ -182,7 +182,7 @@ pub(super) fn events(requests: &[Request]) -> Vec<Event> {
     }
     events.extend([
         Event::Repeat,
-        // First over the cable: where presence is not told apart, the session that is kept is one that may set a key.
+        // USB first: the shape ignores presence, so the stored world should be one whose session may set a key.
         Event::Greet(Transport::Usb),
         Event::Greet(Transport::Uart),
         Event::GreetAgain,

@@ -30,7 +30,7 @@ pub(super) fn judge(before: StateName, event: Event, requests: &[Request], seen:
             "{event:?} {asked:?} acted against the table: {acted:?}"
         );
     }
-    // Nobody talks himself past presence, nor feeds the lease with what is old.
+    // No request bypasses presence, and no old keep-alive renews the lease.
     assert!(
         !seen.opened || seen.present,
         "{event:?} {asked:?}: opened by nobody at the robot"
@@ -62,14 +62,14 @@ pub(super) fn judge(before: StateName, event: Event, requests: &[Request], seen:
         return;
     }
     if seen.armed {
-        // Whoever arms is there.
+        // The host that arms is alive.
         assert!(seen.fresh, "{}", told());
         // Arming clears no e-stop.
         assert!(before != EStopped, "{}", told());
         return;
     }
     match before {
-        // A fresh host of the open session may clear the e-stops that it names.
+        // A live host of the open session may clear the e-stops that it counts.
         EStopped
             if matches!(
                 (event, asked),
@@ -84,7 +84,7 @@ pub(super) fn judge(before: StateName, event: Event, requests: &[Request], seen:
             assert!(only(&[Stopping, Settling, Stopped, EStopped]), "{}", told());
         }
         _ => {
-            // Once a step has brought a powered robot to a stop, the same step does not take it out again.
+            // A step that has stopped a powered robot does not start it again.
             let stopped = all.iter().position(|state| OFF.contains(state));
             let rest = stopped.map_or(&[][..], |at| &all[at..]);
             assert!(

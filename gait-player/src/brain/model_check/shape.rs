@@ -1,4 +1,4 @@
-//! Equivalence of worlds.
+//! Equivalence relation of worlds.
 
 use super::world::World;
 use crate::TICK_US;
@@ -8,30 +8,30 @@ use crate::brain::state::State;
 use crate::brain::tables::SwapWay;
 use crate::brain::work::Work;
 
-/// In which respect worlds are told apart that are the same otherwise: in one at a time, for with all at once there are too
-/// many to come to an end.
+/// Aspect in which worlds are distinguished additionally. One aspect at a time: all together give too many states for the
+/// search to end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Finer {
     Nothing,
-    /// Why the brain last stopped.
+    /// Cause of the last stop.
     Causes,
-    /// How far a ramp or a cycle has come.
+    /// Progress of a ramp or a cycle.
     Progress,
-    /// Age of the last keep-alive, time that the battery was low in all, and since when it is well.
+    /// Age of the last keep-alive, accumulated low-battery time, and time since the battery is well.
     Ages,
-    /// How long ago the last resets were.
+    /// Ages of the last resets.
     Resets,
-    /// Whether settings wait to be stored.
+    /// Settings that wait to be stored.
     Saving,
-    /// Which pieces of which table have come while there is a key.
+    /// Received parts of each table, with a key set.
     Keys,
-    /// Who is at the robot, and which way the session came; the battery is left out for it.
+    /// Presence and transport of the session; the battery is left out to limit the number of states.
     Presence,
 }
 
 impl World {
-    /// What makes two worlds the same.
-    #[allow(clippy::too_many_lines)] // one fact after the other
+    /// Returns the equivalence class of the world.
+    #[allow(clippy::too_many_lines)] // a plain list of fields
     pub(super) fn shape(&self, finer: Finer) -> Shape {
         let brain = &self.brain;
         let state = &brain.state;
@@ -157,7 +157,7 @@ impl World {
     }
 }
 
-/// What makes two worlds the same.
+/// Facts that two equivalent worlds share.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 #[allow(clippy::struct_excessive_bools)] // facts, not states
 pub(super) struct Shape {
@@ -169,9 +169,9 @@ pub(super) struct Shape {
     at_neutral: bool,
     session: (bool, bool, bool),
     present: Option<Present>,
-    /// Short runs, and whether they lock arming.
+    /// Number of short runs, and whether they lock arming.
     starts: Option<(u8, bool)>,
-    /// Set in the brain, set in the flash, asked for in the open session.
+    /// Key set in the brain, stored in the flash, required by the open session.
     key: (bool, bool, bool),
     repeat: (bool, bool, bool),
     battery: Option<BatteryShape>,
@@ -182,10 +182,10 @@ pub(super) struct Shape {
     unsaved: (bool, bool),
 }
 
-/// Voltage, low, stopping for it, time below the limit and time well.
+/// Voltage, low, stopping because of it, time below the limit, time well.
 type BatteryShape = (Option<u16>, bool, bool, Option<u8>, Option<u8>);
 
-/// The session is over USB, the bench window is open, the boot loader was asked for, the lengths are far from those as built.
+/// Session over USB, bench window open, boot loader requested, lengths far from those as built.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 #[allow(clippy::struct_excessive_bools)] // facts, not states
 struct Present {
@@ -200,7 +200,7 @@ struct Present {
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 struct Upload {
     came: Option<u16>,
-    /// The checksum of the table that was announced, and whether its bytes are those.
+    /// Announced checksum of the table; `complete` if the received bytes match it.
     announced: u32,
     complete: bool,
 }

@@ -1,4 +1,4 @@
-//! A brain with all that surrounds it, and observations of each step.
+//! World of the model check: a brain with host, storage and inputs, and the observations of each step.
 
 use super::event::{Event, FILLED_IN};
 use crate::brain::session::FRESH_US;
@@ -8,7 +8,7 @@ use crate::{TICK_US, Transport};
 use link_protocol::*;
 use std::vec::Vec;
 
-/// A brain with all that surrounds it.
+/// Brain with its environment.
 #[derive(Clone)]
 pub(super) struct World {
     pub(super) brain: Brain,
@@ -19,21 +19,21 @@ pub(super) struct World {
     pub(super) upload: u16,
     pub(super) begun: u32,
     nonce: u32,
-    /// The last request's frame, and whether it could move the robot.
+    /// Frame of the last request, and whether it could move the robot.
     last: Vec<u8>,
     pub(super) last_moves: bool,
-    /// A request has been made in the open session.
+    /// The open session has had a request.
     pub(super) asked: bool,
-    /// Set where the open session began with a key.
+    /// Signer of the open session, if it began with a key.
     pub(super) seal: Option<Seal>,
     counter: u64,
-    /// The way of the host that greeted last.
+    /// Transport of the last greeting.
     pub(super) via: Transport,
     last_beat: Vec<u8>,
     jumper: bool,
 }
 
-/// A request that acted, and how it stood with the authority table just before.
+/// A request that acted, with its standing in the authority table just before.
 #[derive(Debug)]
 pub(super) struct Acted {
     pub(super) needs: Option<Needs>,
@@ -42,23 +42,23 @@ pub(super) struct Acted {
     pub(super) state: StateName,
 }
 
-/// Observations of a step.
+/// Observations of one step.
 #[derive(Default)]
 #[allow(clippy::struct_excessive_bools)] // facts, not states
 pub(super) struct Seen {
-    /// The state after each tick, in order, without repeats.
+    /// State after each tick, in order, without repeats.
     pub(super) states: Vec<StateName>,
-    /// A request that was not refused.
+    /// Accepted request.
     pub(super) acted: Option<Acted>,
     /// An arm was granted.
     pub(super) armed: bool,
-    /// The lease was not empty before.
+    /// The lease was valid before the step.
     pub(super) fresh: bool,
-    /// Something fed the lease.
+    /// The lease was renewed.
     pub(super) fed: bool,
-    /// A first key was set, lengths far from those as built, or the boot loader was to be entered.
+    /// A first key was set, lengths far from those as built were set, or the boot loader was requested.
     pub(super) opened: bool,
-    /// Somebody was at the robot before.
+    /// A person was present before the step.
     pub(super) present: bool,
 }
 
@@ -86,8 +86,7 @@ impl World {
         world
     }
 
-    /// Whether it differs from all other events: where no signature is asked for, a request without one is nothing but a
-    /// request.
+    /// Returns false if the event equals another one: without a required signature, an unsigned request is an ordinary one.
     pub(super) fn can_meet(&self, event: Event) -> bool {
         self.seal.is_some() || !matches!(event, Event::Unsigned(_))
     }
@@ -105,11 +104,11 @@ impl World {
             Event::Ask(index) => {
                 self.sequence = self.sequence.wrapping_add(1);
                 let (session, sequence) = (self.brain.session.number(), self.sequence);
-                // A piece of a table has no place in the order.
+                // A chunk has no sequence number.
                 self.asked |= session != 0 && !matches!(requests[index], Request::Chunk(_));
                 seen.armed = self.ask(session, sequence, &requests[index]);
             }
-            // Only where there is a number to be late for, or none needed.
+            // Only if a later number exists, or the request requires no number.
             Event::Late(index) if !self.asked && !requests[index].is_stop() => {}
             Event::Late(index) => {
                 let (session, sequence) = (self.brain.session.number(), self.sequence);
@@ -139,7 +138,7 @@ impl World {
             }
             Event::Repeat => {
                 let frame = self.last.clone();
-                // Not a new arm, whatever it is answered.
+                // A repeat is no new arm, whatever the reply.
                 self.receive(&frame);
             }
             Event::Greet(via) => {
@@ -170,7 +169,7 @@ impl World {
                 let boot = Boot {
                     reset_reason,
                     kept: self.brain.output.kept,
-                    // Power takes the RAM's memory, not the flash's.
+                    // A power cut clears the RAM but not the flash.
                     starts: (reset_reason != ResetReason::PowerOn)
                         .then_some(self.brain.output.starts),
                     session_seed: self.brain.session.number().wrapping_add(7),
@@ -193,7 +192,7 @@ impl World {
         seen
     }
 
-    /// How the request of this event stands with the authority table; `None` if it is no request.
+    /// Standing of the event's request in the authority table. Returns `None` if the event is no request.
     fn standing(&self, event: Event, requests: &[Request]) -> Option<Acted> {
         let (index, ours) = match event {
             Event::Ask(index) => (index, true),
@@ -213,7 +212,7 @@ impl World {
         })
     }
 
-    /// How much of what needs presence has happened.
+    /// Number of effects so far that require presence.
     fn guarded(&self) -> u8 {
         let brain = &self.brain;
         let far = brain.settings.configuration.middle_m > 1.5 * brain.built.middle_m;
@@ -245,7 +244,7 @@ impl World {
         }
     }
 
-    /// Whether it is an arm and was granted.
+    /// Sends a request; returns true if it is an arm and was granted.
     fn ask(&mut self, session: u16, sequence: u16, request: &Request) -> bool {
         let mut request = request.clone();
         match &mut request {
@@ -291,7 +290,7 @@ impl World {
         self.receive(&frame(0, 0, &Message::Hello(hello)));
         let session = &self.brain.session;
         if session.number() != before {
-            // The same greeting again opens another session after a key was set.
+            // After a key was set, the same greeting opens another session.
             self.asked = false;
             let binding = Binding {
                 boot_nonce: session.boot_nonce(),
@@ -303,7 +302,7 @@ impl World {
         }
     }
 
-    /// A frame as the open session asks for it.
+    /// Encodes a frame, signed if the open session requires it.
     fn signed(&mut self, session: u16, sequence: u16, message: &Message) -> Vec<u8> {
         let Some(seal) = &self.seal else {
             return frame(session, sequence, message);
@@ -329,7 +328,7 @@ impl World {
         self.last_beat = frame;
     }
 
-    /// Whether the answer is Done.
+    /// Passes a frame to the brain; returns true if the reply is Done.
     fn receive(&mut self, frame: &[u8]) -> bool {
         self.brain.receive(self.now_us, self.via, frame);
         self.is_done_said()

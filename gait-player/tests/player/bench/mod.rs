@@ -1,5 +1,5 @@
-//! A host with perfect manners, a clock and a link around a brain: for tests that then leave manners aside.
-#![allow(dead_code, clippy::wildcard_imports)] // each test uses its part; and talks the whole protocol
+//! Test bench: a correct host with clock and link around a brain. Tests deviate from its behaviour on purpose.
+#![allow(dead_code, clippy::wildcard_imports)] // each test uses a part of it, and all messages of the protocol
 
 pub(crate) mod stops;
 
@@ -34,9 +34,9 @@ pub(crate) struct Bench {
     pub(crate) replies: Vec<(Header, Reply)>,
     pub(crate) others: Vec<(Header, Message)>,
     pub(crate) bytes_out: usize,
-    /// The way on which this host speaks.
+    /// Transport of this host.
     pub(crate) via: Transport,
-    /// Checksum of the last table that was begun.
+    /// Checksum of the last table for which an upload began.
     begun: u32,
     decoder: Decoder,
 }
@@ -62,7 +62,7 @@ pub(crate) fn play(cycles: u32, period_us: u32) -> Request {
     })
 }
 
-/// Stands for table and settings as the robot holds them: [`Bench::ask`] fills them in.
+/// Placeholder for table and settings; [`Bench::ask`] replaces it with the robot's own.
 pub(crate) const AS_HELD: Checked = Checked {
     table_crc32: 0,
     settings_crc32: 0,
@@ -71,7 +71,7 @@ pub(crate) const AS_HELD: Checked = Checked {
 pub(crate) const ARM: Request = Request::Arm;
 
 impl Bench {
-    /// A brain that was greeted.
+    /// Returns a brain after a greeting.
     pub(crate) fn new() -> Self {
         let mut bench = Self::with(config());
         bench.greet(1);
@@ -133,7 +133,7 @@ impl Bench {
         reply
     }
 
-    /// A keep-alive of a host that has heard the robot just now.
+    /// Sends a keep-alive of a host that has just received a frame of the robot.
     pub(crate) fn beat(&mut self) {
         self.beat_that_heard(self.now_us);
     }
@@ -146,7 +146,7 @@ impl Bench {
         self.send(Header::new(self.session, 0), &Message::Heartbeat(heartbeat));
     }
 
-    /// Somebody closes the bench jumper.
+    /// Closes the bench jumper.
     pub(crate) fn come_near(&mut self) {
         self.inputs.present = true;
         self.tick();
@@ -181,7 +181,7 @@ impl Bench {
         }
     }
 
-    /// One tick, with a keep-alive every 40 ms where they are wanted.
+    /// Runs one tick, with a keep-alive every 40 ms if enabled.
     pub(crate) fn tick(&mut self) -> Output {
         self.now_us += u64::from(TICK_US);
         if self.keep_alive && (self.now_us / u64::from(TICK_US)).is_multiple_of(2) {
@@ -196,7 +196,7 @@ impl Bench {
         (0..us / u64::from(TICK_US)).map(|_| self.tick()).collect()
     }
 
-    /// Ticks until a state is reached; how long it took, µs.
+    /// Runs ticks until a state is reached; returns the duration, µs.
     pub(crate) fn until(&mut self, state: StateName, at_most_us: u64) -> u64 {
         let start = self.now_us;
         while self.output.state != state {
@@ -210,7 +210,7 @@ impl Bench {
         self.now_us - start
     }
 
-    /// Sends a request under a number; replies that came at once.
+    /// Sends a request under a number; returns an immediate reply.
     pub(crate) fn send_request(&mut self, sequence: u16, request: Request) -> Option<Reply> {
         let request = self.filled_in(request);
         let before = self.replies.len();
@@ -238,7 +238,7 @@ impl Bench {
         request
     }
 
-    /// Sends a request, and waits for the reply.
+    /// Sends a request and waits for the reply.
     pub(crate) fn ask(&mut self, request: Request) -> Reply {
         self.sequence = self.sequence.wrapping_add(1);
         let sequence = self.sequence;
@@ -277,13 +277,13 @@ impl Bench {
         }
     }
 
-    /// Clears as many e-stops as there were.
+    /// Clears the present count of e-stops.
     pub(crate) fn clear_estop(&mut self) {
         let count = self.status().estops;
         self.done(Request::ClearEStop { count });
     }
 
-    /// Begin and chunks; the upload's number.
+    /// Sends Begin and all chunks; returns the upload's number.
     pub(crate) fn send_table(&mut self, table: &GaitTable) -> u16 {
         let len = u16::try_from(table.bytes().len()).unwrap();
         self.begun = table.crc32();
@@ -328,7 +328,7 @@ impl Bench {
         );
     }
 
-    /// A bench that plays this table.
+    /// Returns a bench that plays this table.
     pub(crate) fn playing(table: &GaitTable, request: Request) -> Self {
         let mut bench = Self::new();
         bench.upload(table);

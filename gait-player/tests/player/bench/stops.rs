@@ -1,12 +1,12 @@
-//! Benches in every powered state, and what a stop must look like from there.
-#![allow(dead_code, clippy::wildcard_imports)] // each test uses its part; and talks the whole protocol
+//! Benches in every powered state, and the expected course of a stop.
+#![allow(dead_code, clippy::wildcard_imports)] // each test uses a part of it, and all messages of the protocol
 #![allow(clippy::float_cmp)] // neutral is exact
 
 use super::*;
 
 pub(crate) const TICK: u64 = TICK_US as u64;
 
-/// A bench in each powered state, attached.
+/// Returns one attached bench per powered state.
 pub(crate) fn powered() -> Vec<Bench> {
     let table = circle(1.2);
     let mut holding = Bench::new();
@@ -38,7 +38,7 @@ pub(crate) fn powered() -> Vec<Bench> {
     benches
 }
 
-/// Ticks until a stop begins (at neutral there is nothing to ramp); how long it took, µs.
+/// Runs ticks until a stop begins (at neutral there is no ramp); returns the duration, µs.
 pub(crate) fn until_stopping(bench: &mut Bench, at_most_us: u64) -> u64 {
     let start = bench.now_us;
     while !matches!(
@@ -55,7 +55,7 @@ pub(crate) fn until_stopping(bench: &mut Bench, at_most_us: u64) -> u64 {
     bench.now_us - start
 }
 
-/// Follows a stop to its end: ramp straight to neutral at the full rate, half a second there, pulses off.
+/// Checks a stop to its end: ramp straight to neutral at the full rate, half a second there, pulses off.
 pub(crate) fn follow_stop(bench: &mut Bench, cause: StopCause) {
     let from = bench.output.setpoint;
     let longest = f64::from(from[0].abs().max(from[1].abs())) / 3.5;
