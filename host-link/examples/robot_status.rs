@@ -1,5 +1,5 @@
-//! What a robot says of itself: `cargo run -p host-link --example robot_status -- /dev/rfcomm0`, or `-- 127.0.0.1:4000` for a twin
-//! (`swimmer twin --tcp 127.0.0.1:4000`).
+//! Prints the status of a robot: `cargo run -p host-link --example robot_status -- /dev/rfcomm0`, or `-- 127.0.0.1:4000` for a
+//! twin (`swimmer twin --tcp 127.0.0.1:4000`).
 
 use std::error::Error;
 

@@ -1,7 +1,7 @@
-//! Setting up the HC-05 once, through a USB serial adapter, with the AT commands that its makers share: speed, name, PIN.
+//! One-time setup of the HC-05 through a USB serial adapter, with the AT commands common to all makers: speed, name, PIN.
 //!
-//! [`Dialogue`] decides what to say next and knows bytes and times only; [`converse`] moves them over a [`Port`]. What is
-//! set already is left alone, and what was set is read back, because modules of some makers say OK and keep nothing.
+//! [`Dialogue`] is the state machine over bytes and times; [`converse`] runs it over a [`Port`]. Correct settings stay
+//! untouched. New settings are read back, because some modules reply OK and keep the old value.
 
 mod answer;
 mod dialogue;
@@ -15,14 +15,14 @@ use crate::Port;
 pub use dialogue::{Action, Dialogue};
 pub use error::{Hc05Error, WantedError};
 
-/// Speed of the module's AT mode when KEY was held as it got its power \[baud\].
+/// Speed of the AT mode if KEY was held at power-on \[baud\].
 pub const AT_BAUD: u32 = 38_400;
-/// Speeds that the module and the robot's UART share \[baud\].
+/// Speeds common to the module and the robot's UART \[baud\].
 pub const BAUDS: [u32; 7] = [9_600, 19_200, 38_400, 57_600, 115_200, 230_400, 460_800];
-/// Longest name that all makers' modules take.
+/// Longest name that all makers' modules accept.
 const MAX_NAME: usize = 31;
 
-/// What the module is to be; `None` leaves it as it is.
+/// Requested settings of the module; `None` leaves a setting unchanged.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Wanted {
     name: Option<String>,
@@ -31,15 +31,15 @@ pub struct Wanted {
 }
 
 impl Wanted {
-    /// A speed (one of [`BAUDS`]), a name of 1 to 31 printable ASCII characters and a PIN of 4 to 16 digits.
+    /// Validates a speed (one of [`BAUDS`]), a name of 1 to 31 printable ASCII characters and a PIN of 4 to 16 digits.
     ///
     /// # Errors
-    /// [`WantedError`] where the module would not take it.
+    /// [`WantedError`] if the module would refuse a value.
     pub fn new(baud: u32, name: Option<String>, pin: Option<String>) -> Result<Self, WantedError> {
         if !BAUDS.contains(&baud) {
             return Err(WantedError::Baud { baud });
         }
-        // A quote or a comma ends a name on some modules and belongs to it on others.
+        // A quote or a comma ends a name on some modules and is part of it on others.
         let plain = |c: char| (c.is_ascii_graphic() || c == ' ') && c != '"' && c != ',';
         if let Some(name) = &name
             && !((1..=MAX_NAME).contains(&name.len()) && name.chars().all(plain))
@@ -55,34 +55,34 @@ impl Wanted {
     }
 }
 
-/// What the module said of itself; `None` where it would not.
+/// Settings reported by the module; `None` if it did not report one.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Module {
-    /// Version of its firmware, as `2.0-20100601`.
+    /// Firmware version, such as `2.0-20100601`.
     pub version: Option<String>,
-    /// 0 waits to be called (as the robot must), 1 calls, 2 echoes.
+    /// Role: 0 waits for connections (as the robot must), 1 initiates them, 2 echoes.
     pub role: Option<u8>,
-    /// The name that a computer sees.
+    /// Name shown to computers.
     pub name: Option<String>,
-    /// The PIN that pairing asks for.
+    /// PIN for pairing.
     pub pin: Option<String>,
     /// Speed, stop bits and parity of its data mode.
     pub uart: Option<Uart>,
 }
 
-/// Speed, stop bits and parity as the module counts them.
+/// Speed, stop bits and parity, in the module's encoding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Uart {
     /// Speed \[baud\].
     pub baud: u32,
     /// 0: one stop bit, 1: two.
     pub stop: u8,
-    /// 0: none, 1: odd, 2: even.
+    /// 0: no parity, 1: odd, 2: even.
     pub parity: u8,
 }
 
 impl Uart {
-    /// As the robot's UART speaks: one stop bit, no parity.
+    /// Settings of the robot's UART: one stop bit, no parity.
     pub const fn at(baud: u32) -> Self {
         Self {
             baud,
@@ -98,10 +98,10 @@ impl fmt::Display for Uart {
     }
 }
 
-/// One thing that can be set.
+/// A setting of the module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Setting {
-    /// Waits to be called.
+    /// Role: waits for connections.
     Role,
     /// Name.
     Name,
@@ -112,7 +112,7 @@ pub enum Setting {
 }
 
 impl Setting {
-    /// Its word in answers.
+    /// Word for this setting in messages.
     pub fn word(self) -> &'static str {
         match self {
             Self::Role => "role",
@@ -123,21 +123,21 @@ impl Setting {
     }
 }
 
-/// What the dialogue came to.
+/// Result of a dialogue.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Outcome {
-    /// The module as it was found.
+    /// Settings before the dialogue.
     pub before: Module,
-    /// As it was left.
+    /// Settings after the dialogue.
     pub after: Module,
-    /// What was not as wanted when it was found, in the order in which it is set.
+    /// Settings that differed from the requested ones, in the order in which they are set.
     pub differed: Vec<Setting>,
 }
 
-/// Sets the module up, or with `only_check` asks it only.
+/// Sets the module up, or only reads its settings with `only_check`.
 ///
 /// # Errors
-/// [`Hc05Error`]: each thing that goes wrong at a bench with its own advice.
+/// [`Hc05Error`], with one variant per fault at the bench.
 pub fn converse(
     port: &mut impl Port,
     wanted: &Wanted,

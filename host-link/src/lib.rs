@@ -1,7 +1,6 @@
-//! The host end of the wire: ports (serial, pseudo-terminal, TCP, virtual), the session, and a blocking [`Robot`] over any of
-//! them.
+//! Host end of the link: ports (serial, pseudo-terminal, TCP, virtual), the session, and a blocking [`Robot`] over any port.
 //!
-//! A state machine without I/O ([`session::Session`]) decides; the shell ([`Robot`]) moves its bytes.
+//! [`session::Session`] is a state machine without I/O (sans-IO); [`Robot`] moves its bytes.
 //!
 //! ```
 //! use std::time::Duration;

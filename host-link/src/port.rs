@@ -1,9 +1,9 @@
-//! One trait for everything bytes can travel through, so that the session never knows what carries it.
+//! Port: one trait for every byte transport, so that the session is independent of it.
 //!
-//! A port owns its clock. A serial port's clock is the wall; a virtual port's clock stands still until somebody reads and
-//! waits, so that an hour of link time is tested in a second and twice the same.
+//! A port owns its clock. A serial port uses real time. The clock of a virtual port advances only while the caller reads or
+//! waits, so a test simulates an hour of link time in a second and is reproducible.
 //!
-//! The ports of an operating system are left out where there is none (WebAssembly in a browser).
+//! Ports of the operating system are not compiled for WebAssembly.
 
 #[cfg(unix)]
 mod beside;
@@ -40,36 +40,36 @@ pub use traced::{TracedFrame, TracedPort};
 pub use virtual_port::{Device, VirtualPort};
 pub use wire::{Wire, WireSpeed};
 
-/// A two-way stream of bytes with a clock of its own.
+/// Bidirectional byte stream with its own clock.
 pub trait Port: Send {
-    /// Reads what has arrived, waiting at most `timeout` for the first byte.
+    /// Reads available bytes; waits at most `timeout` for the first one.
     ///
-    /// Returns how many bytes were put into `buf`; `Ok(0)` says that the time passed without any. A virtual port moves its
-    /// clock on while it waits.
+    /// Returns the number of bytes written to `buf`; `Ok(0)` after a time-out. A virtual port advances its clock while it
+    /// waits.
     ///
     /// # Errors
-    /// What the operating system says when the port is gone.
+    /// The error of the operating system if the port is gone.
     fn read(&mut self, buf: &mut [u8], timeout: Duration) -> io::Result<usize>;
 
-    /// Sends all of `bytes`. May return before the last one has left; waits at most a second for a port that takes none.
+    /// Sends all of `bytes`. It may return before the last byte has left, and waits at most a second for a port that accepts
+    /// none.
     ///
     /// # Errors
-    /// What the operating system says when the port is gone; [`io::ErrorKind::TimedOut`].
+    /// The error of the operating system if the port is gone; [`io::ErrorKind::TimedOut`].
     fn write(&mut self, bytes: &[u8]) -> io::Result<()>;
 
-    /// Sends as many of `bytes` as the port takes without waiting. Returns their number; 0 if it takes none at present.
+    /// Sends as many of `bytes` as the port accepts without waiting. Returns their number, possibly 0.
     ///
     /// # Errors
-    /// What the operating system says when the port is gone.
+    /// The error of the operating system if the port is gone.
     fn write_ready(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.write(bytes).map(|()| bytes.len())
     }
 
-    /// Discards bytes that were written and have not left yet, as far as the system allows: for a stop, which must not wait
-    /// behind them.
+    /// Discards written bytes that have not left yet, if the system allows it: a stop must not wait behind them.
     fn discard_unsent(&mut self) {}
 
-    /// The time on this port's clock, since an arbitrary origin.
+    /// Time on this port's clock, since an arbitrary origin.
     fn now(&self) -> Duration;
 }
 

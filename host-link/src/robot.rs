@@ -1,5 +1,5 @@
-//! Blocking calls to a robot over any port. The [`Session`] decides everything; this module moves its bytes and waits, in one loop
-//! (`connection`).
+//! Blocking calls to a robot over any port. The [`Session`] is the state machine; this module moves its bytes and waits, in one
+//! loop (`connection`).
 
 pub mod await_play;
 mod connection;
@@ -22,18 +22,18 @@ use crate::session::{
     UploadProgress, cause_in_words,
 };
 
-/// How often a caller is asked whether to go on while nothing happens.
+/// Longest interval between two calls of a callback while nothing happens.
 const BEAT: Duration = Duration::from_millis(20);
 
-/// Sees every piece of telemetry and when it arrived, on the port's clock.
+/// Callback for each telemetry frame, with its time of arrival on the port's clock.
 pub type Observer = Box<dyn FnMut(&Telemetry, Duration) + Send>;
 
-/// What ended the motion after a stop was sent.
+/// Cause that ended the motion after a stop was sent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StoppedBy {
-    /// The stop: the robot answered it.
+    /// The stop: the robot replied to it.
     Request,
-    /// The robot itself, for this reason, by its telemetry; the stop's answer has not come.
+    /// The robot itself, for this cause, according to telemetry; there was no reply to the stop.
     Itself(StopCause),
 }
 
@@ -50,26 +50,26 @@ impl std::fmt::Display for StoppedBy {
     }
 }
 
-/// A robot behind a port.
+/// Robot at the far end of a port.
 ///
-/// The robot stops by itself when it hears nothing fresh for half a second, so that between requests somebody must
-/// [`listen`](Robot::listen): every method here keeps the lease fed while it waits, and none does between calls.
+/// The robot stops without a fresh keep-alive for half a second. Every method renews the lease while it waits, but nothing does
+/// between calls, so call [`listen`](Robot::listen) there.
 pub struct Robot<P> {
     connection: Connection<P>,
     hello: HelloReply,
 }
 
 impl<P: Port> Robot<P> {
-    /// Greets the robot behind `port`. `seed` must differ between programs and runs (the time and the process, say); tests
-    /// give a constant.
+    /// Greets the robot at `port`. `seed` must differ between programs and runs (for example time and process id); tests use a
+    /// constant.
     ///
     /// # Errors
-    /// No answer, versions that do not meet, a port that failed.
+    /// No reply, incompatible versions, or a failed port.
     pub fn connect(port: P, seed: u64) -> Result<Self, LinkError> {
         Self::connect_with(port, SessionConfig::new(seed))
     }
 
-    /// [`connect`](Self::connect) with every setting of a session.
+    /// [`connect`](Self::connect) with all settings of a session.
     ///
     /// # Errors
     /// As [`connect`](Self::connect).
@@ -77,7 +77,7 @@ impl<P: Port> Robot<P> {
         Self::connect_observed(port, config, Callbacks::default())
     }
 
-    /// [`connect_with`](Self::connect_with) with callbacks, which are called while the robot is greeted too.
+    /// [`connect_with`](Self::connect_with) with callbacks, which also run during the greeting.
     ///
     /// # Errors
     /// As [`connect`](Self::connect).
@@ -91,12 +91,11 @@ impl<P: Port> Robot<P> {
         Ok(Self { connection, hello })
     }
 
-    /// Sends a stop without greeting first, until it is answered: the quickest way to a robot at rest.
-    /// Returns the port, and what ended the motion: where the stop waits behind other bytes, the robot may have
-    /// stopped by itself before.
+    /// Sends a stop without a greeting, until it gets a reply: the fastest stop. Returns the port and the cause that ended the
+    /// motion, because the robot may stop by itself while the stop waits behind other bytes.
     ///
     /// # Errors
-    /// No answer, or a port that failed.
+    /// No reply, or a failed port.
     pub fn stop_at_once(
         port: P,
         seed: u64,
@@ -109,7 +108,7 @@ impl<P: Port> Robot<P> {
         Ok((connection.port, by))
     }
 
-    /// Greets again: after an error of the link, or to take a robot back. The robot's motion is left as it is.
+    /// Greets again: after a link error, or to take over the robot. The motion continues.
     ///
     /// # Errors
     /// As [`connect`](Self::connect).
@@ -118,7 +117,7 @@ impl<P: Port> Robot<P> {
         Ok(())
     }
 
-    /// Goes on over another port, as after a Bluetooth module came back under a new handle. Greets again.
+    /// Continues over another port, for example after a Bluetooth module reconnected under a new handle. Greets again.
     ///
     /// # Errors
     /// As [`connect`](Self::connect).
@@ -127,52 +126,52 @@ impl<P: Port> Robot<P> {
         self.reconnect().map(|()| old)
     }
 
-    /// What the robot said of itself when it was greeted.
+    /// Reply of the robot to the greeting.
     pub fn info(&self) -> &HelloReply {
         &self.hello
     }
 
-    /// The firmware's version and commit in words.
+    /// Version and commit of the firmware, as text.
     pub fn firmware(&self) -> String {
         crate::session::firmware_name(&self.hello.firmware)
     }
 
-    /// What crossed the link so far, as counted here. (What the robot counted: [`counters`](Self::counters).)
+    /// Counts of the link at the host. [`counters`](Self::counters) returns the robot's counts.
     pub fn link_counters(&self) -> LinkCounters {
         self.connection.session.counters()
     }
 
-    /// The robot's clock on the port's; `None` before the first ping came back.
+    /// Fit of the robot's clock to the port's clock. Returns `None` before the first reply to a ping.
     pub fn clock(&self) -> Option<ClockFit> {
         self.connection.session.clock()
     }
 
-    /// Whether the robot has shown in this session that it has the key: it signs its answers. `None` without a key.
+    /// Returns true if the robot has proved in this session that it has the key, by signed replies. `None` without a key.
     pub fn answers_signed(&self) -> Option<bool> {
         self.connection.session.answers_signed()
     }
 
-    /// The last telemetry that came.
+    /// Latest telemetry.
     pub fn telemetry(&self) -> Option<&Telemetry> {
         self.connection.latest.as_ref()
     }
 
-    /// Shows every later piece of telemetry to `observer`.
+    /// Sets the callback for telemetry.
     pub fn observe(&mut self, observer: Observer) {
         self.connection.observer = Some(observer);
     }
 
-    /// The port.
+    /// Port of the robot.
     pub fn port(&self) -> &P {
         &self.connection.port
     }
 
-    /// The port.
+    /// Port of the robot.
     pub fn port_mut(&mut self) -> &mut P {
         &mut self.connection.port
     }
 
-    /// Puts another port around or in place of the present one, with the session as it is: a trace, say.
+    /// Wraps or replaces the port and keeps the session, for example to add a trace.
     pub fn map_port<Q: Port>(self, wrap: impl FnOnce(P) -> Q) -> Robot<Q> {
         Robot {
             connection: self.connection.map_port(wrap),
@@ -180,7 +179,7 @@ impl<P: Port> Robot<P> {
         }
     }
 
-    /// Leaves the robot as it is and returns the port. Unless it plays detached, the robot stops when its lease ends.
+    /// Returns the port and leaves the robot unchanged. Unless it plays detached, it stops when its lease runs out.
     pub fn into_port(self) -> P {
         self.connection.port
     }
@@ -195,11 +194,11 @@ impl<P: Port> Robot<P> {
         self.connection.callbacks.halt = Some(halt);
     }
 
-    /// Keeps the session alive for `time`, or until `watch` breaks; `watch` is asked after each telemetry, and with the last
-    /// one (or none yet) at least every 20 ms of the port's clock.
+    /// Keeps the session alive for `time`, or until `watch` breaks. `watch` runs after each telemetry frame, and at least every
+    /// 20 ms of the port's clock with the latest one, if any.
     ///
     /// # Errors
-    /// The port failed, or nothing valid was heard for 5 s.
+    /// The port failed, or no valid frame arrived for 5 s.
     pub fn listen(
         &mut self,
         time: Duration,
@@ -223,11 +222,11 @@ impl<P: Port> Robot<P> {
         })
     }
 
-    /// Uploads a gait table (four bytes a knot, as `gait-player` writes it) and makes it the active one. Takes at most
-    /// `patience`; a failed upload of the same table goes on where it was. `progress` sees each step and may break off.
+    /// Uploads a gait table (four bytes per knot, as `gait-player` writes it) and makes it active. Takes at most `patience`.
+    /// Repeating a failed upload of the same table resumes it. `progress` runs after each step and may cancel the upload.
     ///
     /// # Errors
-    /// [`LinkError::Refused`] with the knot or angle that does not pass, [`LinkError::Silent`], [`LinkError::Deadline`],
+    /// [`LinkError::Refused`] with the invalid knot or angle, [`LinkError::Silent`], [`LinkError::Deadline`],
     /// [`LinkError::Interrupted`].
     pub fn upload(
         &mut self,
@@ -266,8 +265,8 @@ impl<P: Port> Robot<P> {
         })
     }
 
-    /// What [`upload`](Self::upload) takes for a table of `bytes` where nothing is lost and the robot stands still; zero without a
-    /// session.
+    /// Expected duration of [`upload`](Self::upload) for a table of `bytes` without losses, while the robot is at rest; zero
+    /// without a session.
     pub fn expected_upload(&self, bytes: usize) -> Duration {
         self.connection
             .session
@@ -275,7 +274,7 @@ impl<P: Port> Robot<P> {
             .unwrap_or_default()
     }
 
-    /// Sends a request and waits for its reply, which is not a refusal.
+    /// Sends a request and waits for its reply. A refusal is an error.
     fn ask(&mut self, request: Request, doing: &'static str) -> Result<Reply, LinkError> {
         let now = self.connection.now();
         let ticket = self.connection.session.request(now, request);
@@ -317,7 +316,7 @@ fn check_heard<P: Port>(connection: &Connection<P>, doing: &'static str) -> Resu
     })
 }
 
-/// What ended the motion, by the event that ended a stop.
+/// Cause that ended the motion, from the event that ended a stop.
 fn stopped_by(event: &Event) -> StoppedBy {
     match event {
         Event::StoppedByItself { cause, .. } => StoppedBy::Itself(*cause),

@@ -1,4 +1,5 @@
-//! The host's side of the link as a state machine without I/O: bytes and times in, bytes, events and the next deadline out.
+//! Host's side of the link as a state machine without I/O (sans-IO): bytes and times in; bytes, events and the next deadline
+//! out.
 //!
 //! ```text
 //!             connect                 HelloReply, versions meet
@@ -10,13 +11,12 @@
 //!    └───────────────── StaleSession without an upload ────────────┘
 //! ```
 //!
-//! Glossary. *Request*: asked of the robot, acts at most once, one at a time under way, in the order asked. *Ticket*: names
-//! a request until its event comes; every ticket ends in exactly one event. *Upload*: a table as Begin, a window of chunks,
-//! Commit. *Lease*: the robot stops when it hears no fresh keep-alive for half a second: one that tells a robot's time that
-//! was heard not long ago.
+//! Glossary. *Request*: acts at most once on the robot; requests are sent one at a time, in order. *Ticket*: identifies a
+//! request; every ticket ends in exactly one event. *Upload*: a table as Begin, a window of chunks, Commit. *Lease*: the robot
+//! stops without a fresh keep-alive for half a second. A keep-alive is fresh if it echoes a recent time of the robot.
 //!
-//! Stop and e-stop end every unanswered request and the upload (their tickets fail with [`LinkError::Dropped`]), go out at
-//! once, ahead of chunks, and even without an open session.
+//! Stop and e-stop end every unanswered request and the upload (their tickets fail with [`LinkError::Dropped`]). They are sent
+//! at once, ahead of chunks, and even without an open session.
 
 mod beats;
 mod clock_fit;
@@ -56,25 +56,24 @@ use in_flight::{Greeting, Link, Owner, Pending, Upload, describe};
 use round_trip::RoundTrip;
 use upload::Window;
 
-/// Tries before a request that an operator waits for is given up.
+/// Number of attempts of a request.
 pub const TRIES: u32 = 5;
-/// Silence after which an upload is given up.
+/// Silence after which an upload fails.
 pub const LONGEST_SILENCE: Duration = Duration::from_secs(5);
 
-/// What a session must be told before it starts.
+/// Configuration of a session.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SessionConfig {
-    /// Where its nonces come from; two programs that start at the same moment must not have the same.
+    /// Source of the nonces. Two programs that start at the same moment need different seeds.
     pub seed: u64,
-    /// Bytes per second that the slowest part of the way carries: chunks are not sent faster, so that a stop never waits
-    /// behind more than one.
+    /// Bytes per second of the slowest part of the link. Chunks are not sent faster, so that a stop waits behind at most one.
     pub bytes_per_second: f64,
-    /// The key shared with the robot: every frame but the greeting is signed with it.
+    /// Key shared with the robot. Every frame except the greeting is signed with it.
     pub key: Option<Key>,
 }
 
 impl SessionConfig {
-    /// A session over the robot's 115 200 baud.
+    /// Configuration for the robot's 115 200 baud.
     pub fn new(seed: u64) -> Self {
         Self {
             seed,
@@ -92,11 +91,11 @@ pub struct Session {
     decoder: Decoder,
     outgoing: Vec<u8>,
     link: Link,
-    /// The session number of the last open session: a stop goes out under it.
+    /// Number of the last open session, used for stops.
     number: u16,
-    /// Signs the frames of that session, and verifies the robot's.
+    /// Signer and verifier of that session.
     seal: Option<Seal>,
-    /// Frames signed in it.
+    /// Number of frames signed in it.
     signed: u64,
     /// Counter of the last frame that the robot signed in it; 0 before the first one.
     proven: u64,
@@ -109,13 +108,13 @@ pub struct Session {
     clock: ClockSamples,
     beats: Beats,
     last_heard: Duration,
-    /// What the robot told of itself last in this session.
+    /// Latest telemetry of this session.
     told: Option<Telemetry>,
-    /// When the line has carried the chunks handed out so far.
+    /// Time at which the line has sent the chunks so far.
     line_free: Duration,
-    /// Nothing new is put under way before: the robot is busy.
+    /// No new request before this time: the robot is busy.
     hold_until: Duration,
-    /// Answers in a row that it is.
+    /// Consecutive busy replies.
     busy: u32,
     last_robot_us: Option<u64>,
     boot_nonce: Option<u32>,
@@ -124,7 +123,7 @@ pub struct Session {
 }
 
 impl Session {
-    /// A session that has not greeted yet.
+    /// Returns a session before its greeting.
     pub fn new(config: SessionConfig) -> Self {
         let mut rng = ChaCha8Rng::seed_from_u64(config.seed);
         let sequence = rng.random();
@@ -158,8 +157,8 @@ impl Session {
         }
     }
 
-    /// Greets the robot. Ends in [`Event::Connected`] or [`Event::Failed`]. An upload under way goes on afterwards; a
-    /// request under way fails, since the robot answers it in no new session.
+    /// Greets the robot. Ends in [`Event::Connected`] or [`Event::Failed`]. An upload continues afterwards. A pending request
+    /// fails, because the robot does not answer it in a new session.
     pub fn connect(&mut self, now: Duration) -> Ticket {
         let ticket = self.ticket();
         self.abandon_greeting();
@@ -173,7 +172,7 @@ impl Session {
         ticket
     }
 
-    /// Asks something of the robot. Ends in [`Event::Answered`] or [`Event::Failed`].
+    /// Sends a request. Ends in [`Event::Answered`] or [`Event::Failed`].
     pub fn request(&mut self, now: Duration, request: Request) -> Ticket {
         let ticket = self.ticket();
         if request.is_stop() {
@@ -181,7 +180,7 @@ impl Session {
                 .pending
                 .as_ref()
                 .is_some_and(|pending| matches!(pending.request, Request::EStop));
-            // The e-stop may have been lost: a stop after it must not be all that the robot hears.
+            // The e-stop may have been lost, and a plain stop must not replace it.
             let request = if estop_unanswered {
                 Request::EStop
             } else {
@@ -200,13 +199,13 @@ impl Session {
         ticket
     }
 
-    /// Sends a gait table of at most 2048 bytes to slot `slot`. Ends in [`Event::Uploaded`] or [`Event::Failed`], by
-    /// `deadline` (a time of the host's clock) at the latest. An upload under way fails.
+    /// Uploads a gait table of at most 2048 bytes to slot `slot`. Ends in [`Event::Uploaded`] or [`Event::Failed`], at the
+    /// latest at `deadline` (on the host's clock). An earlier upload fails.
     pub fn upload(&mut self, now: Duration, slot: u8, table: &[u8], deadline: Duration) -> Ticket {
         self.send_table(now, slot, table, None, deadline)
     }
 
-    /// The same for a table that does not become active, but follows the play under way as `follower`.
+    /// Uploads a table that does not become active, but follows the present play as `follower`.
     pub fn upload_follower(
         &mut self,
         now: Duration,
@@ -271,12 +270,12 @@ impl Session {
         ticket
     }
 
-    /// Signs with another key, or none, from the next session on.
+    /// Uses another key, or no key, from the next session on.
     pub fn set_key(&mut self, key: Option<Key>) {
         self.config.key = key;
     }
 
-    /// Bytes of a piece: as many as frames have room for.
+    /// Bytes per chunk: the most that fits a frame.
     fn piece(&self) -> usize {
         if self.config.key.is_some() {
             MAX_SIGNED_CHUNK
@@ -289,31 +288,31 @@ impl Session {
         Window::new(total, wanted, self.piece())
     }
 
-    /// Breaks the upload off, without an event. The robot keeps what has arrived and the table it plays.
+    /// Cancels the upload, without an event. The robot keeps the received bytes and its active table.
     pub fn cancel_upload(&mut self) {
         self.upload = None;
         self.pending
             .take_if(|pending| pending.owner == Owner::Upload);
     }
 
-    /// Nobody waits for this any longer: it holds up nothing that is asked next, and ends without an event. It may still act.
+    /// Abandons a request: it no longer delays later ones, and ends without an event. It may still act.
     pub fn forget(&mut self, ticket: Ticket) {
         self.queue.retain(|(queued, _)| *queued != ticket);
         self.pending
             .take_if(|pending| pending.owner == Owner::Ticket(ticket));
     }
 
-    /// Gives the bytes that are to be sent now, in order.
+    /// Returns the bytes to send now, in order.
     pub fn take_outgoing(&mut self) -> Vec<u8> {
         std::mem::take(&mut self.outgoing)
     }
 
-    /// The next thing that happened, oldest first.
+    /// Returns the next event, oldest first.
     pub fn next_event(&mut self) -> Option<Event> {
         self.events.pop_front()
     }
 
-    /// The robot's greeting, while a session is open.
+    /// The robot's reply to the greeting, while a session is open.
     pub fn hello(&self) -> Option<&HelloReply> {
         match &self.link {
             Link::Open(hello) => Some(hello),
@@ -321,12 +320,12 @@ impl Session {
         }
     }
 
-    /// The robot's clock on the host's; `None` before the first ping came back.
+    /// Fit of the robot's clock to the host's clock. Returns `None` before the first reply to a ping.
     pub fn clock(&self) -> Option<ClockFit> {
         self.clock.fit()
     }
 
-    /// Everything counted so far.
+    /// Counts of this session's link.
     pub fn counters(&self) -> LinkCounters {
         LinkCounters {
             received: self.decoder.counters(),
@@ -335,13 +334,13 @@ impl Session {
         }
     }
 
-    /// When a valid frame of the open session last came.
+    /// Time of the last valid frame of the open session.
     pub fn last_heard(&self) -> Duration {
         self.last_heard
     }
 
-    /// Whether the robot has shown in this session that it has the key: it signs its answers. `None` without a key. One that
-    /// does not has no key, or older firmware, or is another than it seems.
+    /// Returns true if the robot has proved in this session that it has the key, by signed replies. `None` without a key. A
+    /// robot that does not sign has no key, older firmware, or is an impostor.
     pub fn answers_signed(&self) -> Option<bool> {
         self.seal.as_ref().map(|_| self.proven > 0)
     }
@@ -367,7 +366,7 @@ impl Session {
             }
             _ => encode(header, message, &mut frame),
         };
-        // Every message of the protocol fits a frame; one that did not would be lost and asked again.
+        // Every message of the protocol fits a frame. One that did not would be lost and repeated.
         let Ok(len) = encoded else {
             return 0;
         };
@@ -396,7 +395,7 @@ impl Session {
         }
     }
 
-    /// A stop: everything unanswered fails.
+    /// Fails everything unanswered, because of a stop.
     fn drop_unanswered(&mut self) {
         self.end_upload(LinkError::Dropped {
             doing: "uploading the gait",
@@ -404,7 +403,7 @@ impl Session {
         self.fail_unanswered(|_| true, |doing| LinkError::Dropped { doing });
     }
 
-    /// Fails the queue, and the request under way where it is `meant`.
+    /// Fails the queue, and the pending request if it is `meant`.
     fn fail_unanswered(
         &mut self,
         meant: impl Fn(&Request) -> bool,
@@ -425,7 +424,7 @@ impl Session {
         }
     }
 
-    /// A newer greeting takes the place of one under way.
+    /// Replaces a pending greeting by a newer one.
     fn abandon_greeting(&mut self) {
         if let Link::Greeting(Greeting {
             ticket: Some(ticket),

@@ -1,6 +1,6 @@
-//! Test support: ports in memory, and links with faults, the same from the same seed.
+//! Test support: ports in memory, and links with faults that a seed reproduces.
 //!
-//! A robot's own link needs none of it. Programs that put a virtual robot behind a bad link (`swimmer twin --faults`) turn on the
+//! Not needed for a real link. Programs that put a virtual robot behind a faulty link (`swimmer twin --faults`) enable the
 //! feature `testing`.
 //!
 //! ```

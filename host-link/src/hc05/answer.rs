@@ -1,18 +1,18 @@
-//! What the module sends, line by line.
+//! Line parser for the module's replies.
 
-/// Longest line that is kept; noise of a wrong speed has no ends of lines.
+/// Longest line that is kept: noise of a wrong speed has no line ends.
 const MAX_LINE: usize = 128;
 
-/// A line's meaning.
+/// Meaning of a line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Line {
-    /// The command is done.
+    /// The command succeeded.
     Ok,
-    /// It is not; the module's code (hexadecimal digits), empty where it gives none.
+    /// The command failed. Contains the module's code (hexadecimal digits), or is empty without one.
     Error(String),
-    /// `+KEY:value`, or `KEY:value` as some makers write.
+    /// `+KEY:value`, or `KEY:value` from some makers.
     Value(String),
-    /// Neither.
+    /// Any other text.
     Other(String),
 }
 
@@ -40,14 +40,14 @@ impl Line {
     }
 }
 
-/// Cuts bytes into lines and counts those that are text of no module.
+/// Splits bytes into lines, and counts bytes that no module sends.
 #[derive(Debug, Default)]
 pub(super) struct Lines {
     line: Vec<u8>,
 }
 
 impl Lines {
-    /// Takes a byte; the line that it ended, where it ended one.
+    /// Adds a byte. Returns the line that it completes, if any.
     pub(super) fn push(&mut self, byte: u8) -> Option<Line> {
         if byte != b'\n' && byte != b'\r' {
             if self.line.len() < MAX_LINE {
@@ -60,7 +60,7 @@ impl Lines {
         (!text.is_empty()).then(|| Line::read(&text))
     }
 
-    /// Forgets half a line.
+    /// Discards an incomplete line.
     pub(super) fn clear(&mut self) {
         self.line.clear();
     }

@@ -1,4 +1,4 @@
-//! The dialogue with the module as a state machine: one command at a time, each answered by OK, by an error, or by nobody.
+//! State machine of the dialogue with the module: one command at a time, which ends with OK, an error or a time-out.
 
 use std::mem::take;
 use std::time::Duration;
@@ -6,25 +6,25 @@ use std::time::Duration;
 use super::answer::{Line, Lines};
 use super::{Hc05Error, Module, Outcome, Setting, Uart, Wanted};
 
-/// How long an answer is waited for. Asking for its name takes some modules most of a second.
+/// Time-out of a command. Some modules need most of a second to report their name.
 const PATIENCE: Duration = Duration::from_secs(2);
-/// The first `AT` may meet the rest of an earlier line and a module that still starts.
+/// Attempts of the first `AT`, which may follow an incomplete line or reach a module that is still starting.
 const KNOCKS: u32 = 4;
-/// Between an answer and the next command: some makers' modules miss one that comes sooner.
+/// Pause between a reply and the next command: some modules miss an earlier one.
 const REST: Duration = Duration::from_millis(50);
 
-/// What the caller does next.
+/// Next action of the caller.
 #[derive(Debug)]
 pub enum Action {
-    /// Send this.
+    /// Send this text.
     Send(String),
-    /// Nothing until bytes come or the port's clock shows this.
+    /// Wait for bytes, or until this time of the port's clock.
     WaitUntil(Duration),
-    /// It is over; asked again, it waits for ever.
+    /// The dialogue is over. Later polls wait forever.
     Done(Result<Outcome, Hc05Error>),
 }
 
-/// A command and what its answer leads to.
+/// Command under way.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Step {
     Knock(u32),
@@ -35,8 +35,8 @@ enum Step {
     Reset,
 }
 
-/// Makers disagree on whether a PIN stands in quotes; a module that takes the other style for granted refuses, or keeps
-/// the quotes as part of the PIN. How it writes its own PIN tells which to try first.
+/// Quoting of the PIN, which differs between makers. A module of the other style refuses the PIN, or keeps the quotes as part
+/// of it. The style of the reported PIN is tried first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Quotes {
     First(bool),
@@ -50,7 +50,7 @@ impl Quotes {
     }
 }
 
-/// How a command was answered.
+/// Outcome of a command.
 #[derive(Debug)]
 enum Answer {
     Ok(Option<String>),
@@ -58,19 +58,19 @@ enum Answer {
     Silence,
 }
 
-/// The dialogue.
+/// Dialogue with a module.
 #[derive(Debug)]
 pub struct Dialogue {
     wanted: Wanted,
     only_check: bool,
     step: Step,
-    /// When the present command was sent.
+    /// Time at which the present command was sent.
     sent: Option<Duration>,
     not_before: Duration,
     now: Duration,
     lines: Lines,
     value: Option<String>,
-    /// Bytes since the first command, and whether our own came back.
+    /// Number of bytes since the first command. `echoed`: our own bytes came back.
     heard: usize,
     echoed: bool,
     quotes: bool,
@@ -82,7 +82,7 @@ pub struct Dialogue {
     end: End,
 }
 
-/// Whether the dialogue is over.
+/// End of the dialogue.
 #[derive(Debug)]
 enum End {
     NotYet,
@@ -90,12 +90,12 @@ enum End {
     Told,
 }
 
-/// In the order in which they are asked, set and read back; the speed last, so that a failure before it leaves the module
-/// as the computer knows it.
+/// Settings in the order in which they are read, set and read back. The speed is last, so that an earlier failure leaves the
+/// module at the known speed.
 const SETTINGS: [Setting; 4] = [Setting::Role, Setting::Name, Setting::Pin, Setting::Uart];
 
 impl Dialogue {
-    /// A dialogue at its start.
+    /// Returns a dialogue at its start.
     pub fn new(wanted: Wanted, only_check: bool) -> Self {
         Self {
             wanted,
@@ -118,7 +118,7 @@ impl Dialogue {
         }
     }
 
-    /// What to do at this time of the port's clock.
+    /// Returns the action at this time of the port's clock.
     pub fn poll(&mut self, now: Duration) -> Action {
         self.now = now;
         if let Some(sent) = self.sent
@@ -142,12 +142,12 @@ impl Dialogue {
         }
     }
 
-    /// Takes bytes that came.
+    /// Adds received bytes.
     pub fn receive(&mut self, bytes: &[u8]) {
         for &byte in bytes {
             self.heard += 1;
             let line = self.lines.push(byte);
-            // What comes before a command belongs to none.
+            // Bytes before a command are not its reply.
             if self.sent.is_none() {
                 continue;
             }
@@ -193,7 +193,7 @@ impl Dialogue {
         }
     }
 
-    /// The present command is answered: goes on to the next.
+    /// Evaluates the outcome of the present command and proceeds to the next one.
     fn answered(&mut self, answer: &Answer) {
         match self.follow(answer) {
             Ok(Some(step)) => self.step = step,
@@ -211,7 +211,7 @@ impl Dialogue {
         self.not_before = self.now + REST;
     }
 
-    /// The step after this one; none at the end.
+    /// Returns the next step; `None` at the end.
     fn follow(&mut self, answer: &Answer) -> Result<Option<Step>, Hc05Error> {
         match (self.step, answer) {
             (Step::Knock(_), Answer::Ok(_)) => Ok(Some(Step::Version)),
@@ -225,7 +225,7 @@ impl Dialogue {
                 (0, false) => Hc05Error::Silent { tries },
                 (bytes, false) => Hc05Error::Noise { bytes },
             }),
-            // A module that restarts may have no time left to say OK.
+            // A module that restarts may not send OK.
             (Step::Reset, Answer::Ok(_) | Answer::Silence) => Ok(None),
             (_, Answer::Silence) => Err(Hc05Error::Stopped {
                 command: self.command(),
@@ -255,7 +255,7 @@ impl Dialogue {
                 self.kept(setting)?;
                 Ok(Some(self.next_to_ask_again()))
             }
-            // What it would not tell before it need not tell after.
+            // A setting that was unreadable before need not be readable afterwards.
             (Step::AskAgain(_), _) => Ok(Some(self.next_to_ask_again())),
             (Step::Set(..) | Step::Reset, Answer::Error(code)) => Err(Hc05Error::Refused {
                 command: self.command(),
@@ -264,7 +264,7 @@ impl Dialogue {
         }
     }
 
-    /// Everything is known: finds what differs; none where nothing is to be done.
+    /// Compares all settings with the requested ones. Returns `None` if nothing has to be changed.
     fn all_asked(&mut self) -> Option<Step> {
         self.after = self.before.clone();
         self.differed = SETTINGS
@@ -272,7 +272,7 @@ impl Dialogue {
             .filter(|&setting| {
                 let wanted = self.value_wanted(setting);
                 let found = self.before.value(setting);
-                // A role that is not told is the maker's, which waits.
+                // An unreadable role is the factory setting, which waits for connections.
                 wanted.is_some()
                     && found != wanted
                     && !(setting == Setting::Role && found.is_none())
@@ -312,7 +312,7 @@ impl Dialogue {
 }
 
 impl Module {
-    /// Takes the value of an answer.
+    /// Stores a reported value.
     fn learn(&mut self, setting: Setting, value: &str) {
         let bare = value.trim_matches('"').to_owned();
         match setting {
@@ -323,7 +323,7 @@ impl Module {
         }
     }
 
-    /// The value as it would be set.
+    /// Requested value in the form in which it is set.
     fn value(&self, setting: Setting) -> Option<String> {
         match setting {
             Setting::Role => self.role.map(|role| role.to_string()),

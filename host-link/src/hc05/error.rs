@@ -1,85 +1,85 @@
-//! What goes wrong at a bench with an HC-05, each in its own sentence with what to do next.
+//! Errors of the HC-05 setup, one per fault at a bench, each with the next step.
 
 use std::io;
 
 use super::BAUDS;
 
-/// Why the module could not be set up.
+/// Reason why the module could not be set up.
 #[derive(Debug, thiserror::Error)]
 pub enum Hc05Error {
-    /// The port itself failed.
+    /// The port failed.
     #[error(
         "while talking to the HC-05: the port failed: {source}; check the adapter's cable and try again"
     )]
     Port {
-        /// The system's words.
+        /// The system's error.
         source: io::Error,
     },
-    /// No byte came back.
+    /// No byte was received.
     #[error(
         "the HC-05 says nothing to `AT`, tried {tries} times. Look at its LED: if it blinks fast, it is not in AT mode: take its power away, hold its button (or its KEY or EN pin at 3.3 V), give it power again and try again. If it blinks slowly (2 s on, 2 s off), it waits for AT: exchange the wires at TXD and RXD (its TXD goes to the adapter's RXD), and join the grounds. If it is dark, it has no power"
     )]
     Silent {
-        /// How often it was asked.
+        /// Number of attempts.
         tries: u32,
     },
-    /// Bytes came back that are no answers.
+    /// The received bytes are not readable.
     #[error(
         "the HC-05 answers `AT` with {bytes} bytes that cannot be read: it speaks at another speed. In AT mode from power-up (button held while power comes, LED 2 s on, 2 s off) it speaks at 38400; when the button was pressed later it keeps its data speed: begin again with the button held, or try --at-baud 9600"
     )]
     Noise {
-        /// Bytes that came.
+        /// Number of received bytes.
         bytes: usize,
     },
-    /// Our own bytes came back, and nothing else.
+    /// Only our own bytes were received (an echo).
     #[error(
         "`AT` comes straight back and nothing answers it: the adapter's TX and RX touch, or this is not the adapter's port; take the HC-05 off: where the echo stays, look at the adapter"
     )]
     Echo,
-    /// It answers, but with errors alone.
+    /// Only error replies were received.
     #[error(
         "the device at this port answers `AT` with ERROR {code}, {tries} times: it is no HC-05 in AT mode; take its power away, hold its button, give it power again and try again"
     )]
     NoAtMode {
         /// The module's code.
         code: String,
-        /// How often it was asked.
+        /// Number of attempts.
         tries: u32,
     },
-    /// It answered earlier, not this.
+    /// An earlier command succeeded, but this one got no reply.
     #[error(
         "the HC-05 answered before, but not to `{command}`: keep its button (or KEY) held all the time, check the wires and try again; what was set already stays"
     )]
     Stopped {
-        /// What was sent last.
+        /// Last command.
         command: String,
     },
-    /// It said no.
+    /// The module replied ERROR.
     #[error(
         "the HC-05 refuses `{command}` with ERROR ({code}){}",
         code_advice(code)
     )]
     Refused {
-        /// What was sent last.
+        /// Last command.
         command: String,
-        /// The module's code: hexadecimal digits, or none.
+        /// The module's code: hexadecimal digits, or empty.
         code: String,
     },
-    /// It said OK and holds something else.
+    /// The module replied OK but kept another value.
     #[error(
         "the HC-05 said OK to its new {setting} but now reads {found} instead of {wanted}: keep its button (or KEY) held all the time and try again; some makers' modules keep nothing in the AT mode that a late press gives"
     )]
     NotKept {
-        /// Which setting.
+        /// Setting that differs.
         setting: &'static str,
-        /// What was set.
+        /// Requested value.
         wanted: String,
-        /// What it reads.
+        /// Value that was read back.
         found: String,
     },
 }
 
-/// What the codes of the makers' common list mean, for the commands that are sent here.
+/// Advice for the error codes of the makers' common list, for the commands that are used here.
 fn code_advice(code: &str) -> &'static str {
     match code {
         "0" => {
@@ -93,21 +93,21 @@ fn code_advice(code: &str) -> &'static str {
     }
 }
 
-/// Why no module could be set up so.
+/// Reason why requested settings are invalid.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum WantedError {
-    /// Not a speed of both ends.
+    /// The speed is not supported by both ends.
     #[error("{baud} baud: the HC-05 and the robot share {}", BAUDS.map(|baud| baud.to_string()).join(", "))]
     Baud {
-        /// The speed that was asked for.
+        /// Requested speed.
         baud: u32,
     },
-    /// Not a name that all makers' modules take.
+    /// The name is not accepted by all makers' modules.
     #[error(
         "the name {0:?}: give 1 to 31 letters, digits, spaces or signs of ASCII, no quote and no comma"
     )]
     Name(String),
-    /// Not a PIN.
+    /// The PIN is invalid.
     #[error("the PIN {0:?}: give 4 to 16 digits; Windows and phones ask for four")]
     Pin(String),
 }

@@ -1,7 +1,7 @@
-//! A second way to a device that another program has open and hangs on: only to stop what hangs there.
+//! Second access to a device that a hung program holds open, only to stop the robot.
 //!
-//! The lock that [`super::SerialPort`] holds is advisory; this looks past it. Speed and mode are those that the other program
-//! has set. Bytes that come back go to whoever reads first, so it is for a program that reads nothing any more.
+//! The lock of [`super::SerialPort`] is advisory, and this port ignores it. Speed and mode are those of the other program.
+//! Received bytes go to whichever program reads first, so the other program must have stopped reading.
 
 use std::io;
 use std::os::fd::OwnedFd;
@@ -15,7 +15,7 @@ use rustix::termios::{QueueSelector, isatty, tcflush};
 
 use super::{Port, tty};
 
-/// A device that another program has open, opened beside it.
+/// Device that another program holds open.
 #[derive(Debug)]
 pub struct BesidePort {
     device: OwnedFd,
@@ -23,17 +23,17 @@ pub struct BesidePort {
 }
 
 impl BesidePort {
-    /// Opens the device without asking whose it is, and throws away what nobody has read: telemetry of before.
+    /// Opens the device regardless of its lock, and discards unread input, which is old telemetry.
     ///
     /// # Errors
-    /// What the system says: not there, not allowed, no terminal device, or locked by a program that is no `swimmer`.
+    /// The system's error: missing, not allowed, no terminal device, or locked by a program other than `swimmer`.
     pub fn open(path: &Path) -> io::Result<Self> {
         let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC | OFlags::NONBLOCK;
         let device = rustix::fs::open(path, flags, Mode::empty())?;
         if !isatty(&device) {
             return Err(Errno::NOTTY.into());
         }
-        // What the hung program has queued and never sent stays: it may be the end of a frame.
+        // Queued output of the hung program is kept: it may be the end of a frame.
         tcflush(&device, QueueSelector::IFlush)?;
         Ok(Self {
             device,
@@ -77,7 +77,7 @@ mod tests {
     use super::super::{OpenError, PtyPort, SerialPort};
     use super::*;
 
-    /// A second program is told that the port is taken, and gets past the first all the same.
+    /// `SerialPort` reports a busy port; this port opens it nevertheless.
     #[test]
     fn a_held_port_is_busy_and_lets_a_stop_in() {
         let folder = tempfile::tempdir().unwrap();
@@ -85,7 +85,7 @@ mod tests {
         let mut robot = PtyPort::open(Some(&path)).unwrap();
         let name = path.to_str().unwrap();
         let holder = SerialPort::open(name, 115_200).unwrap();
-        // Twice: a try that was turned away must not close the door behind it.
+        // Twice: a refused attempt must not lock the device for the next one.
         for _ in 0..2 {
             let busy = SerialPort::open(name, 115_200).unwrap_err();
             assert!(matches!(busy, OpenError::Busy { .. }), "{busy:?}");

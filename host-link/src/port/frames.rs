@@ -1,17 +1,16 @@
-//! Cuts a stream into frames at their zero bytes without looking inside: faults and traces act per frame.
+//! Splits a stream into frames at their zero bytes, without decoding. Faults and traces act per frame.
 
-/// Bytes after which a stream without a zero is cut anyway, so that garbage is passed on and not hoarded.
+/// Largest length without a zero byte; longer data is passed on, so that garbage does not accumulate.
 const LONGEST: usize = 512;
 
-/// Collects bytes until a frame is whole.
+/// Collects bytes until a frame is complete.
 #[derive(Debug, Default)]
 pub(crate) struct FrameCutter {
     partial: Vec<u8>,
 }
 
 impl FrameCutter {
-    /// Hands each whole frame, its closing zero included, to `found`. Zeros that only open a burst go with the frame that
-    /// follows them.
+    /// Passes each complete frame, with its final zero, to `found`. Leading zeros of a burst are part of the next frame.
     pub(crate) fn push(&mut self, bytes: &[u8], mut found: impl FnMut(&mut Vec<u8>)) {
         for &byte in bytes {
             self.partial.push(byte);

@@ -1,16 +1,15 @@
-//! Which serial ports the system has, so that an operator with one robot need not know the name of its port.
+//! List of the serial ports, so that an operator with one robot need not know its port.
 
 use std::fmt;
 
 use serialport::SerialPortType;
 
-/// A serial port that the system lists, and what it says is behind it.
+/// Serial port, with the system's description of its device.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ListedPort {
-    /// What to open.
+    /// Path to open.
     pub path: String,
-    /// What is behind it: a Bluetooth link, a USB device by name; empty where the system does not say, as for the ports
-    /// on a computer's own board.
+    /// Description of the device: a Bluetooth link, or the name of a USB device. Empty if unknown, as for on-board ports.
     pub about: String,
 }
 
@@ -24,16 +23,16 @@ impl fmt::Display for ListedPort {
     }
 }
 
-/// The serial ports of this system in the order of their names; none where it cannot tell.
+/// Serial ports of this system, sorted by name; empty if the system provides no list.
 pub fn serial_ports() -> Vec<ListedPort> {
-    // The listing takes this folder for granted, and a container may have none.
+    // The listing requires this folder, which a container may lack.
     if cfg!(target_os = "linux") && !std::path::Path::new("/sys/class/tty").is_dir() {
         return Vec::new();
     }
     let mut ports: Vec<ListedPort> = serialport::available_ports()
         .unwrap_or_default()
         .into_iter()
-        // On macOS each port has two names; this one waits for a carrier that no robot gives.
+        // On macOS each port has two names; this one waits for a carrier signal, which the robot does not provide.
         .filter(|port| !port.port_name.starts_with("/dev/tty."))
         .map(|port| ListedPort {
             path: port.port_name,

@@ -1,7 +1,7 @@
-//! The robot's end of a pseudo-terminal, so that any program can open a twin by path as if it were a serial port.
+//! Robot's end of a pseudo-terminal: other programs open the digital twin by path, like a serial port.
 //!
-//! No slave end is held open here: the system then tells when a client is present (the twin's STATE pin), and bytes for
-//! nobody are dropped as a disconnected Bluetooth module drops them.
+//! The port keeps no slave end open. So the system reports if a client is present (the twin's STATE pin), and bytes without a
+//! client are dropped, as a disconnected Bluetooth module drops them.
 
 use std::ffi::OsString;
 use std::fs;
@@ -20,42 +20,42 @@ use rustix::termios::{OptionalActions, ioctl_tiocnxcl, tcgetattr, tcsetattr};
 
 use super::Port;
 
-/// Why a pseudo-terminal could not be set up.
+/// Reason why a pseudo-terminal could not be set up.
 #[derive(Debug, thiserror::Error)]
 pub enum PtyError {
-    /// The system gave none.
+    /// The system provided no pseudo-terminal.
     #[error("making a pseudo-terminal: {0}; close some terminals and try again")]
     NoTerminal(#[source] io::Error),
-    /// Something that is not ours stands where the link should go.
+    /// A foreign file exists at the path of the link.
     #[error(
         "linking {0} to the twin's terminal: a file of that name exists; remove it or choose another LINK"
     )]
     Occupied(PathBuf),
-    /// The link leads to a terminal that is in use.
+    /// The link leads to a terminal in use.
     #[error(
         "linking {link}: it leads to {target}, which is in use; end the twin that made it, or remove the link"
     )]
     InUse {
-        /// The link.
+        /// Path of the link.
         link: PathBuf,
-        /// Where it leads.
+        /// Target of the link.
         target: PathBuf,
     },
-    /// The link could not be made.
+    /// The link could not be created.
     #[error(
         "linking {link} to the twin's terminal: {source}; does its folder exist and may you write there?"
     )]
     Link {
-        /// The link.
+        /// Path of the link.
         link: PathBuf,
-        /// The system's words.
+        /// The system's error.
         source: io::Error,
     },
 }
 
-/// The device's end of a pseudo-terminal in raw mode, with an optional symbolic link to the clients' end.
+/// Device end of a pseudo-terminal in raw mode, with an optional symbolic link to the clients' end.
 ///
-/// Clients may close and open it again as often as they like. The link is removed when this is dropped.
+/// Clients may close and reopen it any number of times. Dropping the port removes the link.
 #[derive(Debug)]
 pub struct PtyPort {
     terminal: OwnedFd,
@@ -65,17 +65,17 @@ pub struct PtyPort {
     client_present: bool,
 }
 
-/// How often an absent client is looked for.
+/// Polling interval for an absent client.
 const LOOK: Duration = Duration::from_millis(5);
 
 impl PtyPort {
-    /// Makes a pseudo-terminal; `link`, if any, becomes a symbolic link to it. A stale link, one whose terminal is
-    /// gone, is replaced.
+    /// Creates a pseudo-terminal, and the symbolic link `link` to it if given. A stale link, whose terminal is gone, is
+    /// replaced.
     ///
     /// # Errors
     /// [`PtyError`].
     pub fn open(link: Option<&Path>) -> Result<Self, PtyError> {
-        // Before the terminal is made: a stale link may dangle from the very number that the system gives out next.
+        // Checked before the terminal is created: a stale link may point to the number that the system assigns next.
         if let Some(link) = link {
             check_vacant(link)?;
         }
@@ -97,12 +97,12 @@ impl PtyPort {
         &self.path
     }
 
-    /// Whether a client had the terminal open at the last read or write.
+    /// Returns true if a client had the terminal open at the last read or write.
     pub fn client_present(&self) -> bool {
         self.client_present
     }
 
-    /// Makes or moves the link in one step, so that no client ever finds it missing.
+    /// Creates or moves the link atomically, so that no client finds it missing.
     fn point_link(&self) -> Result<(), PtyError> {
         let Some(link) = &self.link else {
             return Ok(());
@@ -123,7 +123,7 @@ impl PtyPort {
         })
     }
 
-    /// What the terminal is ready for, after at most `timeout`.
+    /// Waits at most `timeout` for the terminal; returns the events that are ready.
     fn ready(&mut self, wanted: PollFlags, timeout: Duration) -> io::Result<PollFlags> {
         let mut fds = [PollFd::new(&self.terminal, wanted)];
         let timeout = Timespec {
@@ -143,8 +143,8 @@ impl PtyPort {
         Ok(flags)
     }
 
-    /// A client has closed. One that had locked the terminal leaves the lock behind: lift it, or where only the
-    /// administrator could, take a new terminal.
+    /// Cleans up after a client has closed. A client that locked the terminal leaves the lock: it is removed, or, if only the
+    /// administrator may do that, the terminal is replaced.
     fn after_client(&mut self) -> io::Result<()> {
         match rustix::fs::open(
             &self.path,
@@ -156,7 +156,7 @@ impl PtyPort {
                 (self.terminal, self.path) = raw_terminal()?;
                 self.point_link().map_err(io::Error::other)
             }
-            // A new client was quicker than we: leave it alone.
+            // A new client has locked the terminal in the meantime.
             Err(Errno::BUSY) => Ok(()),
             Err(errno) => Err(errno.into()),
         }
@@ -176,7 +176,8 @@ impl PtyPort {
     }
 }
 
-/// A terminal without echo, line discipline or translation, and its path. The settings stay when clients come and go.
+/// Opens a terminal without echo, line discipline or translation; returns it with its path. The settings persist when clients
+/// come and go.
 fn raw_terminal() -> rustix::io::Result<(OwnedFd, PathBuf)> {
     let flags = OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC;
     let terminal = rustix::pty::openpt(flags)?;
@@ -196,7 +197,7 @@ fn raw_terminal() -> rustix::io::Result<(OwnedFd, PathBuf)> {
     Ok((terminal, path))
 }
 
-/// Nothing stands at `link`, or a link that an earlier twin left behind.
+/// Checks that `link` does not exist, or is a stale link of an earlier twin.
 fn check_vacant(link: &Path) -> Result<(), PtyError> {
     let Ok(metadata) = fs::symlink_metadata(link) else {
         return Ok(());
@@ -208,8 +209,8 @@ fn check_vacant(link: &Path) -> Result<(), PtyError> {
         return Ok(());
     };
     let target = fs::read_link(link).unwrap_or_default();
-    // A link is made after its terminal. Where the terminal is younger, the one it was made for is gone and the system
-    // has given its number to another program since.
+    // A link is created after its terminal. If the terminal is younger, the original one is gone and the system has reassigned
+    // its number.
     let linked = (metadata.mtime(), metadata.mtime_nsec());
     let born = (terminal.ctime(), terminal.ctime_nsec());
     if target.starts_with("/dev/pts") && born > linked {
@@ -255,7 +256,7 @@ impl Port for PtyPort {
         }
     }
 
-    /// Sends to the client; drops what is for nobody, or for a client that has stopped reading.
+    /// Sends to the client. Drops bytes without a client, or if the client has stopped reading.
     fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
         let mut rest = bytes;
         while !rest.is_empty() {

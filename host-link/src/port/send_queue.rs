@@ -1,4 +1,4 @@
-//! Outbound queue of a port: whole frames in order, and a lane for stops past all of them.
+//! Transmit queue of a port: whole frames in order, with priority for stops.
 //!
 //! ```text
 //!  frames ──► [waiting, bounded] ──┐
@@ -6,8 +6,7 @@
 //!  Stop, EStop ──► [stop lane] ────┘         a stop discards what waits, here and in the port
 //! ```
 //!
-//! Nothing here waits: a port that takes bytes slower than they come makes the queue drop frames, as a full buffer on a link
-//! does.
+//! The queue never waits. If the port is slower than the producer, frames are dropped, as a full buffer on a link does.
 
 use std::collections::VecDeque;
 use std::io;
@@ -18,39 +17,39 @@ use link_protocol::{Decoder, Message};
 use super::FrameCutter;
 use super::Port;
 
-/// Most bytes that wait; further frames are dropped.
+/// Capacity, bytes; further frames are dropped.
 const MOST_WAITING: usize = 8192;
-/// Most stops that wait; one acts as well as many.
+/// Most queued stops; more have no effect.
 const MOST_STOPS: usize = 8;
-/// A paced line is filled ahead by no more than this, so that the port's own buffer stays short.
+/// Lead of a paced line: bounds the bytes in the port's own buffer.
 const AHEAD: Duration = Duration::from_millis(20);
 
-/// Outbound frames of a port.
+/// Transmit queue of a port.
 #[derive(Debug, Default)]
 pub struct SendQueue {
     cutter: FrameCutter,
     decoder: Decoder,
-    /// The frame being sent, from the first byte that the port has not taken.
+    /// Frame in transmission: the bytes that the port has not accepted yet.
     current: Vec<u8>,
     current_is_stop: bool,
     stops: VecDeque<Vec<u8>>,
     waiting: VecDeque<Vec<u8>>,
     waiting_bytes: usize,
-    /// Bytes per second of the line; `None` if whoever pushes keeps to its pace.
+    /// Bytes per second of the line; `None` if the producer paces itself.
     pace: Option<f64>,
-    /// When a paced line has carried what it was given.
+    /// Time at which a paced line has sent its bytes.
     line_free: Duration,
-    /// The port was given other bytes since the last stop.
+    /// Other bytes were passed to the port since the last stop.
     others_ahead: bool,
-    /// A stop came since: what the port has not sent is to be discarded.
+    /// A stop was queued: unsent bytes of the port are to be discarded.
     discard: bool,
-    /// Since when the port has taken nothing.
+    /// Time since which the port has accepted nothing.
     stuck_since: Option<Duration>,
     dropped: u64,
 }
 
 impl SendQueue {
-    /// A queue that gives a port no more bytes per second than its line carries.
+    /// Returns a queue that passes at most this many bytes per second to the port.
     pub fn paced(bytes_per_second: f64) -> Self {
         Self {
             pace: Some(bytes_per_second.max(1.0)),
@@ -58,7 +57,7 @@ impl SendQueue {
         }
     }
 
-    /// Appends frames, in any split. A stop goes past everything that waits, which is dropped. Returns whether there was one.
+    /// Appends frames, in any split. A stop replaces everything that waits. Returns true if there was one.
     pub fn push(&mut self, bytes: &[u8]) -> bool {
         let mut frames = Vec::new();
         self.cutter
@@ -78,10 +77,10 @@ impl SendQueue {
         any_stop
     }
 
-    /// Gives the port what it takes now.
+    /// Passes as many bytes to the port as it accepts now.
     ///
     /// # Errors
-    /// The port's.
+    /// The port's error.
     pub fn drive(&mut self, port: &mut (impl Port + ?Sized)) -> io::Result<()> {
         let now = port.now();
         if std::mem::take(&mut self.discard) {
@@ -106,18 +105,18 @@ impl SendQueue {
         Ok(())
     }
 
-    /// Nothing waits.
+    /// Returns true if nothing waits.
     pub fn is_empty(&self) -> bool {
         self.current.is_empty() && self.stops.is_empty() && self.waiting.is_empty()
     }
 
-    /// How long the port has taken nothing, at `now` on its clock.
+    /// Duration for which the port has accepted nothing, at `now` on its clock.
     pub fn stuck_for(&self, now: Duration) -> Duration {
         self.stuck_since
             .map_or(Duration::ZERO, |since| now.saturating_sub(since))
     }
 
-    /// Frames dropped because the port was too slow.
+    /// Number of frames dropped because the port was too slow.
     pub fn dropped(&self) -> u64 {
         self.dropped
     }
@@ -146,7 +145,7 @@ impl SendQueue {
         self.waiting_bytes = 0;
         self.discard |= self.others_ahead;
         if !self.current_is_stop {
-            // The frame being sent ends here; the zero before the stop closes what the robot has of it.
+            // The current frame is cut off here; the zero before the stop terminates it for the robot.
             self.current.clear();
             if frame.first() != Some(&0) {
                 frame.insert(0, 0);
@@ -175,7 +174,7 @@ mod tests {
     use super::*;
     use link_protocol::{Header, MAX_ENCODED, Request, encode};
 
-    /// A port that takes `room` bytes and then none; what it was given, and has not sent, can be discarded.
+    /// Port that accepts `room` bytes and then none. Accepted bytes that are not sent can be discarded.
     #[derive(Default)]
     struct SlowPort {
         room: usize,
@@ -215,7 +214,7 @@ mod tests {
         bytes[..len].to_vec()
     }
 
-    /// The requests that a robot makes of these bytes.
+    /// Decodes the requests in these bytes.
     fn heard(bytes: &[u8]) -> Vec<Request> {
         let mut decoder = Decoder::new();
         let received = bytes.iter().filter_map(|byte| decoder.push(*byte));
@@ -247,7 +246,7 @@ mod tests {
         }
     }
 
-    /// A port that cannot discard has the first part of a frame: the stop is heard behind it.
+    /// Without discarding, part of a frame is already in the port: the stop after it is still decoded.
     #[test]
     fn a_stop_is_heard_behind_part_of_a_frame() {
         let long = frame(1, Request::Status);
@@ -297,7 +296,7 @@ mod tests {
             queue.drive(&mut port).unwrap();
             port.now += Duration::from_millis(10);
         }
-        // 190 ms of line and 20 ms ahead, and a frame.
+        // 190 ms of line, 20 ms ahead, and one frame.
         let most = 11_520.0_f64 * 0.21 + 20.0;
         assert!((port.unsent.len() as f64) < most, "{}", port.unsent.len());
         assert!(port.unsent.len() > 1500, "{}", port.unsent.len());

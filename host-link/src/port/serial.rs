@@ -1,4 +1,4 @@
-//! A real serial port: a cable, a Bluetooth module, or a pseudo-terminal opened by path.
+//! Serial port of the system: a cable, a Bluetooth module, or a pseudo-terminal opened by path.
 
 #[cfg(not(unix))]
 use std::io::Write;
@@ -13,7 +13,7 @@ use super::Port;
 #[cfg(unix)]
 use super::tty;
 
-/// Longest wait for a port that takes no byte.
+/// Longest wait for a port that accepts no byte.
 const STUCK: Duration = Duration::from_secs(1);
 
 #[cfg(unix)]
@@ -21,70 +21,69 @@ type Native = serialport::TTYPort;
 #[cfg(windows)]
 type Native = serialport::COMPort;
 
-/// Why a serial port could not be opened, and what to do about it.
+/// Reason why a serial port could not be opened, with the next step.
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
-    /// Another program holds it.
+    /// Another program holds the port.
     #[error(
         "opening {path}: another program has the port open; close it (a terminal or a second `swimmer`) and try again"
     )]
     Busy {
-        /// The port's path.
+        /// Path of the port.
         path: String,
     },
-    /// The user may not.
+    /// The user lacks permission.
     #[error("opening {path}: permission denied; {}", permission_advice(group.as_deref()))]
     NoPermission {
-        /// The port's path.
+        /// Path of the port.
         path: String,
-        /// Name of the group that may open it, or its number; none where only its owner may.
+        /// Name or number of the group with permission; `None` if only the owner has it.
         group: Option<String>,
     },
-    /// Nothing there.
+    /// The port does not exist.
     #[error(
         "opening {path}: there is no such port; is the robot switched on and paired, and the path right?"
     )]
     Missing {
-        /// The port's path.
+        /// Path of the port.
         path: String,
     },
-    /// No serial line.
+    /// The file is no serial port.
     #[error(
         "opening {path}: it is there, but it is no serial port; name one (`swimmer robot info` without --port finds it)"
     )]
     NoSerialPort {
-        /// The port's path.
+        /// Path of the port.
         path: String,
     },
-    /// Something else.
+    /// Any other error.
     #[error("opening {path} as a serial port: {reason}; is this path a serial port?")]
     Other {
-        /// The port's path.
+        /// Path of the port.
         path: String,
-        /// The operating system's words.
+        /// The operating system's message.
         reason: String,
     },
 }
 
-/// A serial port of the operating system, opened for this program alone, 8 data bits, no parity, 1 stop bit. Its clock
-/// starts when it is opened.
+/// Serial port of the operating system, opened exclusively, with 8 data bits, no parity, 1 stop bit. Its clock starts when it
+/// is opened.
 ///
-/// On Unix it is locked for all that look at its lock (`flock`), and for nobody else: what must get past a program that hangs
-/// ([`super::BesidePort`]) can.
+/// On Unix the lock is advisory (`flock`), so [`super::BesidePort`] can bypass a hung program.
 #[derive(Debug)]
 pub struct SerialPort {
     port: Native,
-    /// The same device, opened a second time so that writes do not wait.
+    /// Second handle of the device, for non-blocking writes.
     #[cfg(unix)]
     writer: OwnedFd,
     opened: Instant,
 }
 
 impl SerialPort {
-    /// Opens the port and throws away what lay in its input buffer.
+    /// Opens the port and discards its unread input.
     ///
     /// # Errors
-    /// [`OpenError`], one kind for each thing that an operator can mend.
+    /// [`OpenError`], one variant per problem that an operator can fix.
     pub fn open(path: &str, baud: u32) -> Result<Self, OpenError> {
         #[cfg(unix)]
         let second = SecondOpening::of(path);
@@ -92,7 +91,7 @@ impl SerialPort {
             .timeout(Duration::from_millis(10))
             .open_native()
             .map_err(|error| explain(path, &error))?;
-        // Stale bytes would do no harm (they carry a foreign session); dropping them saves the decoder the work.
+        // Stale bytes are harmless (they carry a foreign session), but the decoder need not read them.
         let _ = port.clear(ClearBuffer::Input);
         Ok(Self {
             port,
@@ -123,9 +122,9 @@ fn explain(path: &str, error: &serialport::Error) -> OpenError {
     }
 }
 
-/// Whether the system said that this is no terminal: a file, a folder, `/dev/null`.
+/// Returns true if the system reported that this is no terminal: a file, a folder, `/dev/null`.
 fn is_no_terminal(error: &serialport::Error) -> bool {
-    // The crate keeps no error number, only the C library's words for ENOTTY.
+    // The crate keeps only the C library's text for ENOTTY, not the error number.
     ["typewriter", "ioctl"]
         .iter()
         .any(|word| error.to_string().contains(word))
@@ -142,7 +141,7 @@ fn permission_advice(group: Option<&str>) -> String {
     }
 }
 
-/// Name of the group that may open a device, its number where the system knows no name.
+/// Name of the group that may open a device, or its number if it has no name.
 #[cfg(unix)]
 fn owning_group(path: &str) -> Option<String> {
     use std::os::unix::fs::MetadataExt;
@@ -168,9 +167,9 @@ fn owning_group(_path: &str) -> Option<String> {
     None
 }
 
-/// A device opened before it is opened as a port, without waiting for it. Opening it as a port locks it twice: by `flock`, and by
-/// a mark on the device that turns everybody away, also from an opening that fails on the first lock, and that outlives the open
-/// file. The mark is removed through this opening, whatever comes of the port's.
+/// Handle opened before the port itself, without waiting. Opening the port sets two locks: `flock`, and an exclusive mark on
+/// the device. The mark affects every later opening, even if our own fails at `flock`, and outlives the open file. This handle
+/// removes the mark in every case.
 #[cfg(unix)]
 struct SecondOpening(rustix::io::Result<OwnedFd>);
 
@@ -182,7 +181,7 @@ impl SecondOpening {
         Self(rustix::fs::open(path, flags, Mode::empty()))
     }
 
-    /// Keeps the opening, for writes.
+    /// Keeps the handle for writes.
     fn into_writer(mut self) -> io::Result<OwnedFd> {
         self.unmark();
         let taken = std::mem::replace(&mut self.0, Err(rustix::io::Errno::BADF));
@@ -208,7 +207,7 @@ impl Port for SerialPort {
         if buf.is_empty() {
             return Ok(0);
         }
-        // The system counts whole milliseconds; rounding up keeps a caller with 0.3 ms to go from spinning.
+        // The system counts whole milliseconds; rounding up prevents a busy loop for a caller with 0.3 ms left.
         let whole = Duration::from_millis(
             u64::try_from(timeout.as_micros().div_ceil(1000)).unwrap_or(u64::MAX),
         );
@@ -233,7 +232,7 @@ impl Port for SerialPort {
         }
     }
 
-    /// A port that takes no byte for a second is stuck, not busy: 128 bytes need 11 ms at 115 200 baud.
+    /// A port that accepts no byte for a second has failed: 128 bytes need 11 ms at 115 200 baud.
     #[cfg(unix)]
     fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
         tty::write_all(&self.writer, bytes, STUCK)
@@ -260,7 +259,7 @@ impl Port for SerialPort {
     }
 
     fn discard_unsent(&mut self) {
-        // A driver that cannot sends the bytes all the same.
+        // A driver that cannot discard sends the bytes.
         let _ = self.port.clear(ClearBuffer::Output);
     }
 

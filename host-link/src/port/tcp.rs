@@ -1,4 +1,4 @@
-//! A port over TCP: the twin listens, a program on this or another machine connects.
+//! Port over TCP: the digital twin listens, and a program on this or another machine connects.
 
 use std::io::{self, Read, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream, ToSocketAddrs};
@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use super::Port;
 
-/// One end of a TCP connection. The listening end takes one client at a time and waits for the next when it leaves.
+/// One end of a TCP connection. The listening end accepts one client at a time.
 #[derive(Debug)]
 pub struct TcpPort {
     listener: Option<TcpListener>,
@@ -14,16 +14,16 @@ pub struct TcpPort {
     opened: Instant,
 }
 
-/// Longest wait for an address to answer.
+/// Time-out of a connection attempt per address.
 const TO_CONNECT: Duration = Duration::from_secs(3);
-/// How often an absent client is looked for.
+/// Polling interval for an absent client.
 const LOOK: Duration = Duration::from_millis(5);
 
 impl TcpPort {
-    /// Listens at `address`; port 0 takes a free one.
+    /// Listens at `address`; port 0 selects a free one.
     ///
     /// # Errors
-    /// What the system says: the address is taken or not ours.
+    /// The system's error: the address is in use or not local.
     pub fn listen(address: impl ToSocketAddrs) -> io::Result<Self> {
         let listener = TcpListener::bind(address)?;
         listener.set_nonblocking(true)?;
@@ -37,7 +37,7 @@ impl TcpPort {
     /// Connects to a listening port.
     ///
     /// # Errors
-    /// What the system says: refused, unreachable, unknown name.
+    /// The system's error: refused, unreachable, unknown name.
     pub fn connect(address: impl ToSocketAddrs) -> io::Result<Self> {
         let mut last = io::ErrorKind::NotFound.into();
         let stream = address.to_socket_addrs()?.find_map(|address| {
@@ -55,14 +55,14 @@ impl TcpPort {
         })
     }
 
-    /// Where a listening port listens.
+    /// Local address of a listening port.
     pub fn local_addr(&self) -> Option<SocketAddr> {
         self.listener
             .as_ref()
             .and_then(|listener| listener.local_addr().ok())
     }
 
-    /// Whether a client is connected.
+    /// Returns true if a client is connected.
     pub fn client_present(&self) -> bool {
         self.stream.is_some()
     }
@@ -75,7 +75,7 @@ impl TcpPort {
             Ok((stream, _)) => {
                 stream.set_nonblocking(false)?;
                 stream.set_nodelay(true)?;
-                // A client that stops reading must not stop the robot.
+                // A client that stops reading must not block the robot.
                 stream.set_write_timeout(Some(Duration::from_millis(20)))?;
                 self.stream = Some(stream);
                 Ok(())
@@ -85,7 +85,7 @@ impl TcpPort {
         }
     }
 
-    /// The connection ended: the listening end waits for the next, the other end is finished.
+    /// Handles the end of a connection: the listening end waits for the next one, the other end fails.
     fn gone(&mut self, reason: io::Error) -> io::Result<()> {
         self.stream = None;
         if self.listener.is_some() {
@@ -113,7 +113,7 @@ impl Port for TcpPort {
             self.accept()?;
             let left = deadline.saturating_sub(self.opened.elapsed());
             if let Some(stream) = &mut self.stream {
-                // A zero time-out would mean for ever.
+                // A zero time-out would mean no limit.
                 stream.set_read_timeout(Some(left.max(Duration::from_micros(100))))?;
                 match stream.read(buf) {
                     Ok(0) => self.gone(io::Error::new(

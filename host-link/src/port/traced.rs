@@ -1,4 +1,4 @@
-//! Port wrapper that shows each frame, both ways, to a sink, with the time at which it passed.
+//! Port wrapper that passes each frame of both directions to a sink, with its time.
 
 use std::io;
 use std::time::Duration;
@@ -8,19 +8,19 @@ use link_protocol::{Direction, redact_keys};
 use super::FrameCutter;
 use super::Port;
 
-/// One frame that passed a [`TracedPort`] at the host's end.
+/// Frame that passed a [`TracedPort`] at the host's end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TracedFrame<'a> {
     /// Time on the port's clock when the last byte passed.
     pub at: Duration,
-    /// Which way it went.
+    /// Direction of the frame.
     pub direction: Direction,
-    /// The bytes as they crossed the wire, with the closing zero; corrupted ones too. A key that a frame carries is replaced by
-    /// zeros ([`redact_keys`]).
+    /// Bytes on the wire, with the final zero, including corrupted ones. A key in a frame is replaced by zeros
+    /// ([`redact_keys`]).
     pub bytes: &'a [u8],
 }
 
-/// A port at the host's end that shows every frame to a sink, a link log for instance.
+/// Port at the host's end that passes every frame to a sink, such as a link log.
 pub struct TracedPort<P, S> {
     port: P,
     sink: S,
@@ -29,7 +29,7 @@ pub struct TracedPort<P, S> {
 }
 
 impl<P: Port, S: FnMut(TracedFrame<'_>) + Send> TracedPort<P, S> {
-    /// Wraps `port`; `sink` sees each frame before the caller does.
+    /// Wraps `port`; `sink` gets each frame before the caller does.
     pub fn new(port: P, sink: S) -> Self {
         Self {
             port,
@@ -39,17 +39,17 @@ impl<P: Port, S: FnMut(TracedFrame<'_>) + Send> TracedPort<P, S> {
         }
     }
 
-    /// The port inside.
+    /// Wrapped port.
     pub fn inner(&self) -> &P {
         &self.port
     }
 
-    /// The port inside.
+    /// Wrapped port.
     pub fn inner_mut(&mut self) -> &mut P {
         &mut self.port
     }
 
-    /// Gives port and sink back.
+    /// Returns port and sink.
     pub fn into_parts(self) -> (P, S) {
         (self.port, self.sink)
     }
@@ -96,7 +96,7 @@ impl<P: Port, S: FnMut(TracedFrame<'_>) + Send> TracedPort<P, S> {
     }
 }
 
-/// Shows a frame without its secrets.
+/// Passes a frame without its secrets to the sink.
 fn show(sink: &mut impl FnMut(TracedFrame<'_>), at: Duration, direction: Direction, bytes: &[u8]) {
     let mut bytes = bytes.to_vec();
     redact_keys(&mut bytes);

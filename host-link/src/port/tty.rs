@@ -19,7 +19,7 @@ pub(super) fn wait(device: &OwnedFd, wanted: PollFlags, timeout: Duration) -> io
     }
 }
 
-/// Writes what a non-blocking device takes at once; returns the number of bytes.
+/// Writes the bytes that a non-blocking device accepts at once; returns their number.
 pub(super) fn write_ready(device: &OwnedFd, bytes: &[u8]) -> io::Result<usize> {
     match rustix::io::write(device, bytes) {
         Ok(count) => Ok(count),
@@ -31,7 +31,7 @@ pub(super) fn write_ready(device: &OwnedFd, bytes: &[u8]) -> io::Result<usize> {
 /// Writes all bytes to a non-blocking device.
 ///
 /// # Errors
-/// The system's; [`io::ErrorKind::TimedOut`] if the device has not taken all of them `within` this time.
+/// The system's error; [`io::ErrorKind::TimedOut`] if the device has not accepted all bytes `within` this time.
 pub(super) fn write_all(device: &OwnedFd, bytes: &[u8], within: Duration) -> io::Result<()> {
     let until = Instant::now() + within;
     let mut rest = bytes;

@@ -1,4 +1,4 @@
-//! A port with a simulated device behind it: waiting on the port is what lets the device live.
+//! Port with a simulated device: waiting on the port advances the device.
 
 use std::error::Error;
 use std::io;
@@ -7,24 +7,25 @@ use std::time::Duration;
 use super::Port;
 use super::wire::{Wire, WireSpeed};
 
-/// Something that lives in virtual time at the far end of a wire.
+/// Device in virtual time at the far end of a wire.
 pub trait Device: Send {
-    /// Lives on until `to`. Never goes backwards: an earlier time does nothing.
+    /// Advances the device to the time `to`. An earlier time has no effect.
     fn advance(&mut self, to: Duration);
 
-    /// Takes bytes that arrive at the time reached last.
+    /// Receives bytes at the current time of the device.
     fn receive(&mut self, bytes: &[u8]);
 
-    /// Appends to `out` at most `room` bytes of what the device has to send.
+    /// Appends at most `room` bytes to send to `out`.
     fn transmit(&mut self, room: usize, out: &mut Vec<u8>);
 
-    /// Before it is advanced: nothing will arrive before `until`, nor before what it sends has been under way for `travel`.
-    /// A device may live ahead within these limits and hand out what it sends when its time has come; most need not.
+    /// Announces a quiet period before the device is advanced. Nothing will arrive before `until`, nor within `travel` after
+    /// the device sends something. A device may run ahead within these limits and release its bytes at their time; most devices
+    /// ignore it.
     fn expect_quiet(&mut self, until: Duration, travel: Duration) {
         let _ = (until, travel);
     }
 
-    /// Why it went out of order for good, where it did: from then on it is silent and stands still.
+    /// Permanent failure of the device, if any. After it the device is silent and does not advance.
     fn failure(&self) -> Option<&(dyn Error + Send + Sync + 'static)> {
         None
     }
@@ -52,7 +53,7 @@ impl<D: Device + ?Sized> Device for Box<D> {
     }
 }
 
-/// The host's end of a serial line to a [`Device`], in virtual time.
+/// Host end of a serial line to a [`Device`], in virtual time.
 #[derive(Debug)]
 pub struct VirtualPort<D> {
     device: D,
@@ -62,11 +63,11 @@ pub struct VirtualPort<D> {
     ready: Vec<u8>,
 }
 
-/// How finely device and wire take turns: a device that speaks between two turns is heard up to this much later.
+/// Time step between device and wire; bytes of the device arrive at most this much later.
 const TURN: Duration = Duration::from_millis(1);
 
 impl<D: Device> VirtualPort<D> {
-    /// A line of the given speed, both ways, to `device`, at time zero.
+    /// Returns a line of this speed, in both directions, to `device`, at time zero.
     pub fn new(device: D, speed: WireSpeed) -> Self {
         Self {
             device,
@@ -77,17 +78,17 @@ impl<D: Device> VirtualPort<D> {
         }
     }
 
-    /// The device at the far end.
+    /// Device at the far end.
     pub fn device(&self) -> &D {
         &self.device
     }
 
-    /// The device at the far end.
+    /// Device at the far end.
     pub fn device_mut(&mut self) -> &mut D {
         &mut self.device
     }
 
-    /// Puts another device in the place of this one, with the line as it is: one in a box, say.
+    /// Replaces the device and keeps the line, for example to box the device.
     pub fn map_device<E: Device>(self, wrap: impl FnOnce(D) -> E) -> VirtualPort<E> {
         VirtualPort {
             device: wrap(self.device),
@@ -98,12 +99,12 @@ impl<D: Device> VirtualPort<D> {
         }
     }
 
-    /// Ends the line and gives the device back.
+    /// Returns the device.
     pub fn into_device(self) -> D {
         self.device
     }
 
-    /// Lets time pass without reading; what arrives meanwhile lies ready afterwards.
+    /// Advances the time without reading; bytes that arrive remain readable.
     pub fn pass(&mut self, time: Duration) {
         let end = self.now + time;
         while self.now < end {
@@ -114,7 +115,7 @@ impl<D: Device> VirtualPort<D> {
     fn turn(&mut self, end: Duration) {
         self.now = (self.now + TURN).min(end);
         let mut bytes = Vec::new();
-        // Nobody writes before this read ends: at `end`, or when the next byte is there.
+        // Nothing is written before this read ends: at `end`, or when the next byte arrives.
         let next = [&self.to_device, &self.to_host].map(Wire::next_arrival);
         let quiet = next.into_iter().flatten().fold(end, Duration::min);
         self.device.expect_quiet(quiet, self.to_host.latency());
@@ -124,7 +125,7 @@ impl<D: Device> VirtualPort<D> {
             self.device.receive(&bytes);
             bytes.clear();
         }
-        // A transmitter takes no more than the line carries until the next turn.
+        // A transmitter accepts no more than the line carries until the next step.
         let room = self.to_host.room(self.now + TURN);
         self.device.transmit(room, &mut bytes);
         if !bytes.is_empty() {
@@ -163,7 +164,7 @@ impl<D: Device> Port for VirtualPort<D> {
 mod tests {
     use super::*;
 
-    /// Sends back whatever comes.
+    /// Returns every byte that it receives.
     #[derive(Default)]
     struct Echo {
         pending: Vec<u8>,
@@ -194,7 +195,7 @@ mod tests {
         while total < 100 {
             total += port.read(&mut buf, Duration::from_secs(1)).unwrap();
         }
-        // The echo streams: one line time of 8.7 ms, two latencies of 5 ms, and turns of 1 ms.
+        // The echo overlaps: one line time of 8.7 ms, two latencies of 5 ms, and steps of 1 ms.
         let ms = port.now().as_millis();
         assert!((18..=21).contains(&ms), "{ms} ms");
         assert_eq!(port.read(&mut buf, Duration::from_secs(1)).unwrap(), 0);

@@ -1,4 +1,4 @@
-//! How long bytes take on a serial line: ten bit times each, one after the other, and then the latency of what is between.
+//! Timing of a serial line: ten bit times per byte, in sequence, then the latency of the modules between.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -8,12 +8,12 @@ use std::time::Duration;
 pub struct WireSpeed {
     /// Bits per second; a byte takes ten of them (start, eight data, stop).
     pub baud: u32,
-    /// Travel time after the last bit has left.
+    /// Latency after the last bit has left.
     pub latency: Duration,
 }
 
 impl WireSpeed {
-    /// The robot's line: 115 200 baud and 5 ms for the module between.
+    /// Line of the robot: 115 200 baud and 5 ms for the module.
     pub fn robot() -> Self {
         Self {
             baud: 115_200,
@@ -21,9 +21,8 @@ impl WireSpeed {
         }
     }
 
-    /// A line with a Bluetooth 2.0 module (HC-05) in it, as it is planned for: the serial ends run at 115 200 baud, the
-    /// radio between them passes 5 kB/s and takes 25 ms. That it hands bytes to the host in lumps of 230 is a fault
-    /// (`testing::Faults::clump`).
+    /// Line with a Bluetooth 2.0 module (HC-05), by design values: the serial ends run at 115 200 baud, the radio passes 5 kB/s
+    /// and takes 25 ms. Lumps of 230 bytes towards the host are modelled as a fault (`testing::Faults::clump`).
     pub fn hc05() -> Self {
         Self {
             baud: 50_000,
@@ -31,7 +30,7 @@ impl WireSpeed {
         }
     }
 
-    /// Time one byte occupies the line.
+    /// Duration of one byte on the line.
     pub fn byte_time(&self) -> Duration {
         Duration::from_nanos(10_000_000_000 / u64::from(self.baud.max(1)))
     }
@@ -41,13 +40,13 @@ impl WireSpeed {
 #[derive(Debug)]
 pub struct Wire {
     speed: WireSpeed,
-    /// When the line has finished with everything put on it so far.
+    /// Time at which the line is idle again.
     free_at: Duration,
     under_way: VecDeque<(Duration, u8)>,
 }
 
 impl Wire {
-    /// An idle line.
+    /// Returns an idle line.
     pub fn new(speed: WireSpeed) -> Self {
         Self {
             speed,
@@ -56,7 +55,7 @@ impl Wire {
         }
     }
 
-    /// Puts bytes on the line at `now`; they queue behind those already on it.
+    /// Appends bytes at `now`; they follow the bytes already on the line.
     pub fn push(&mut self, now: Duration, bytes: &[u8]) {
         let byte_time = self.speed.byte_time();
         self.free_at = self.free_at.max(now);
@@ -67,24 +66,24 @@ impl Wire {
         }
     }
 
-    /// Bytes that the line can have begun to carry by `until`, besides those already on it.
+    /// Number of further bytes that the line can start to send by `until`.
     pub fn room(&self, until: Duration) -> usize {
         let free = until.saturating_sub(self.free_at).as_nanos();
         usize::try_from(free.div_ceil(self.speed.byte_time().as_nanos().max(1)))
             .unwrap_or(usize::MAX)
     }
 
-    /// Travel time of a byte after its last bit has left.
+    /// Latency of a byte after its last bit has left.
     pub fn latency(&self) -> Duration {
         self.speed.latency
     }
 
-    /// When the next byte arrives.
+    /// Arrival time of the next byte.
     pub fn next_arrival(&self) -> Option<Duration> {
         self.under_way.front().map(|(at, _)| *at)
     }
 
-    /// Appends to `out` the bytes that have arrived by `now`.
+    /// Appends the bytes that have arrived by `now` to `out`.
     pub fn pop(&mut self, now: Duration, out: &mut Vec<u8>) {
         while let Some((at, byte)) = self.under_way.front()
             && *at <= now

@@ -1,5 +1,5 @@
-//! Wait for the end of a play, over a link that comes and goes: a robot that is no longer heard is greeted
-//! anew and its status requested. It may have gone on (detached), stopped by itself, or restarted.
+//! Wait for the end of a play over an intermittent link. A silent robot is greeted again and its status requested: it may have
+//! continued (detached), stopped by itself, or restarted.
 
 use std::ops::ControlFlow;
 use std::time::Duration;
@@ -12,17 +12,17 @@ use crate::port::Port;
 use crate::session::{Event, LONGEST_SILENCE, LinkError, Ticket};
 
 const WAITING: &str = "waiting for the end of the play";
-/// Time after which the status is asked for when no telemetry tells it.
+/// Time without telemetry after which the status is requested.
 const QUIET: Duration = Duration::from_secs(1);
-/// A robot that plays detached is searched for until so long after the end of its play. One whose play needs the link has stopped
-/// by itself: it is given up after five seconds of silence, when the tries under way are over.
+/// Search time after the expected end of a detached play. A play that needs the link has stopped by itself; it is given up
+/// after five seconds of silence, when pending attempts are over.
 const SEARCH: Duration = Duration::from_secs(30);
-/// How long a robot that has told the end of its play is asked for its status as well. It may hear nothing any more: that is
-/// the most frequent reason to stop.
+/// Time for which the status is requested after telemetry reported the end of the play. The robot may receive nothing any more,
+/// which is the most frequent cause of a stop.
 const LAST_WORD: Duration = Duration::from_millis(1_500);
 
-/// Time until the last cycle of a play is done; `None` where nothing plays, or without end. A pause and the soft start are
-/// not counted: nobody knows when a pause ends, and a soft start takes two seconds at most.
+/// Time until the last cycle of a play is done. Returns `None` if nothing plays or the play is endless. Pause and soft start
+/// are not counted: the end of a pause is unknown, and a soft start takes at most two seconds.
 pub fn time_left(status: &Status) -> Option<Duration> {
     let playing = matches!(
         status.state,
@@ -31,36 +31,36 @@ pub fn time_left(status: &Status) -> Option<Duration> {
     if !playing || status.cycles == 0 {
         return None;
     }
-    // In 2⁻¹⁶ of a cycle.
+    // Fixed point, in units of 2⁻¹⁶ cycles.
     let done = (u64::from(status.cycle) << 16) | u64::from(status.phase);
     let left = (u64::from(status.cycles) << 16).saturating_sub(done);
     let us = (u128::from(left) * u128::from(status.period_us)) >> 16;
     Some(Duration::from_micros(u64::try_from(us).unwrap_or(u64::MAX)))
 }
 
-/// State of the play as far as it is known, and the requests under way.
+/// Known state of the play, and pending requests.
 struct Watch {
-    /// When the robot last told something, on the port's clock.
+    /// Time of the robot's last report, on the port's clock.
     told: Duration,
-    /// Until when a silent robot is looked for.
+    /// End of the search for a silent robot.
     search_until: Duration,
     asked: Option<Ticket>,
     greeted: Option<Ticket>,
-    /// The status that came last.
+    /// Latest status.
     status: Option<Status>,
-    /// The telemetry that told the end of the play, and when the first such came.
+    /// Telemetry that reported the end of the play, and the time of the first such report.
     ended: Option<(Duration, Telemetry)>,
 }
 
 impl Watch {
-    /// What the robot told of its end, where it says no more than that.
+    /// Final status from telemetry, if the robot sends nothing else.
     fn last_word(&self, now: Duration) -> Option<Status> {
         let (since, telemetry) = self.ended.as_ref()?;
         (now.saturating_sub(*since) >= LAST_WORD).then(|| told_by(telemetry, self.status.as_ref()))
     }
 }
 
-/// The status of a piece of telemetry, with what that does not hold from an earlier status.
+/// Status derived from telemetry; the remaining fields come from an earlier status.
 fn told_by(telemetry: &Telemetry, before: Option<&Status>) -> Status {
     Status {
         robot_us: telemetry.robot_us,
@@ -81,16 +81,16 @@ fn told_by(telemetry: &Telemetry, before: Option<&Status>) -> Status {
 }
 
 impl<P: Port> Robot<P> {
-    /// Waits until the robot has played its last cycle. `watch` sees each telemetry, at least every 20 ms of the port's
-    /// clock, and may break off, which stops the robot. If the link is lost meanwhile, the robot is greeted again; it is given up
-    /// after five seconds of silence, one that plays detached 30 s after its end. A robot that still tells that its play is over is believed after
-    /// 1.5 s, whether it answers or not.
+    /// Waits for the end of the last cycle. `watch` runs after each telemetry frame and at least every 20 ms of the port's
+    /// clock; if it breaks, the robot is stopped. A lost robot is greeted again. It is given up after five seconds of silence,
+    /// or, if it plays detached, 30 s after the end of its play. If telemetry keeps reporting the end of the play, it is
+    /// accepted after 1.5 s even without a reply.
     ///
     /// Returns the status at the end.
     ///
     /// # Errors
-    /// [`LinkError::StoppedEarly`] when it stops for another reason, [`LinkError::Interrupted`] after breaking off (the stop
-    /// was answered), and the link's own.
+    /// [`LinkError::StoppedEarly`] if the robot stopped for another cause, [`LinkError::Interrupted`] if `watch` broke (the
+    /// stop got its reply), and errors of the link.
     pub fn wait_until_finished(
         &mut self,
         watch: impl FnMut(Option<&Telemetry>) -> ControlFlow<()>,
@@ -102,16 +102,16 @@ impl<P: Port> Robot<P> {
         Err(LinkError::Interrupted { doing: WAITING })
     }
 
-    /// [`wait_until_finished`](Self::wait_until_finished) for a caller that has something else to do now and then: breaking
-    /// off returns `None` and leaves the robot as it is. Waiting may go on afterwards.
+    /// [`wait_until_finished`](Self::wait_until_finished) for callers with interleaved work: if `watch` breaks, it returns
+    /// `None` and leaves the robot unchanged. The wait may be continued later.
     ///
     /// # Errors
-    /// As there, but for the interruption.
+    /// As for [`wait_until_finished`](Self::wait_until_finished), except the interruption.
     pub fn wait_while(
         &mut self,
         mut watch: impl FnMut(Option<&Telemetry>) -> ControlFlow<()>,
     ) -> Result<Option<Status>, LinkError> {
-        // Telemetry from before the play says nothing about its end.
+        // Telemetry from before the play does not show its end.
         self.connection.latest = None;
         let now = self.connection.now();
         let mut known = Watch {
@@ -147,7 +147,7 @@ impl<P: Port> Robot<P> {
     }
 }
 
-/// Takes an event; returns the status if the play is over.
+/// Handles an event. Returns the status if the play is over.
 fn learn<P: Port>(
     connection: &mut Connection<P>,
     event: Option<Event>,
@@ -220,7 +220,7 @@ fn ask_status<P: Port>(connection: &mut Connection<P>, known: &mut Watch) {
     }
 }
 
-/// The play is over, one way or another.
+/// Returns true if the play has ended, for any cause.
 pub fn at_rest(state: StateName, cause: StopCause) -> bool {
     match state {
         StateName::Stopped | StateName::EStopped | StateName::Stopping | StateName::Settling => {
@@ -231,10 +231,10 @@ pub fn at_rest(state: StateName, cause: StopCause) -> bool {
     }
 }
 
-/// The status of a robot at rest as the result of its play.
+/// Converts the status of a robot at rest to the result of its play.
 ///
 /// # Errors
-/// [`LinkError::StoppedEarly`] where it did not come to the end of the last cycle.
+/// [`LinkError::StoppedEarly`] if the last cycle was not completed.
 pub fn finished(status: Status) -> Result<Status, LinkError> {
     if status.cause == StopCause::Finished {
         return Ok(status);

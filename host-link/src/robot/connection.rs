@@ -1,4 +1,4 @@
-//! Port and session of a robot, and the one loop in which every blocking call waits.
+//! Port and session of a robot, and the loop in which every blocking call waits.
 
 use std::fmt;
 use std::io;
@@ -11,30 +11,30 @@ use super::{BEAT, Observer};
 use crate::port::{Port, SendQueue};
 use crate::session::{Event, LinkError, Session, Ticket};
 
-/// Silence after which it is reported.
+/// Duration of a silence after which it is reported.
 pub const SILENCE_REPORTED: Duration = Duration::from_secs(2);
-/// A virtual clock moves only while somebody waits.
+/// Shortest wait: a virtual clock advances only during waits.
 const SHORTEST_WAIT: Duration = Duration::from_micros(100);
-/// Wait before a port that took not all of the bytes is offered the rest.
+/// Pause before the remaining bytes are offered to a full port again.
 const OFFER_AGAIN: Duration = Duration::from_millis(2);
-/// A port that takes no byte for so long has failed.
+/// Time without an accepted byte after which a port has failed.
 const STUCK: Duration = Duration::from_secs(1);
-/// Longest gap between two looks at the port that counts as listening.
+/// Longest gap between two reads of the port that counts as listening.
 const LISTENING: Duration = Duration::from_millis(500);
 
-/// Report of a silent link, and of its end.
+/// Report of a silent link, or of the end of the silence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Silence {
-    /// No valid frame has come for [`SILENCE_REPORTED`]; the call goes on trying.
+    /// No valid frame for [`SILENCE_REPORTED`]; the call keeps trying.
     Began {
         /// Completes "while …".
         doing: &'static str,
         /// Time without a valid frame.
         silent: Duration,
     },
-    /// A valid frame came again.
+    /// A valid frame arrived.
     Ended {
-        /// Time that passed without one.
+        /// Duration of the silence.
         silent: Duration,
     },
 }
@@ -74,17 +74,17 @@ impl From<Halt> for Request {
     }
 }
 
-/// Callbacks of a blocking robot, called while it waits.
+/// Callbacks of a blocking robot, which run during waits.
 #[derive(Default)]
 pub struct Callbacks {
-    /// Gets the report of a silent link.
+    /// Receives the reports of a silent link.
     pub silence: Option<Box<dyn FnMut(Silence) + Send>>,
-    /// Looked at every 20 ms while a request waits for its reply: a stop ends that wait, and goes out at once. Also looked at when
-    /// the program itself stops the robot; then the result is dropped.
+    /// Polled every 20 ms while a request waits for its reply. A stop ends that wait and is sent at once. Also polled while the
+    /// program itself stops the robot; that result is ignored.
     pub halt: Option<Box<dyn FnMut() -> Option<Halt> + Send>>,
 }
 
-/// Port and session, with what came of them last.
+/// Port and session, with their latest results.
 pub(super) struct Connection<P> {
     pub(super) port: P,
     pub(super) session: Session,
@@ -95,7 +95,7 @@ pub(super) struct Connection<P> {
     /// Start of the present silence.
     silent_since: Duration,
     silence_reported: bool,
-    /// Last look at the port.
+    /// Time of the last read of the port.
     looked: Option<Duration>,
 }
 
@@ -114,7 +114,7 @@ impl<P: Port> Connection<P> {
         }
     }
 
-    /// The same connection over a port around the present one.
+    /// Wraps the port and keeps the connection.
     pub(super) fn map_port<Q: Port>(self, wrap: impl FnOnce(P) -> Q) -> Connection<Q> {
         Connection {
             port: wrap(self.port),
@@ -129,7 +129,7 @@ impl<P: Port> Connection<P> {
         }
     }
 
-    /// Goes on over another port; what the old one had not taken is lost.
+    /// Replaces the port; unsent bytes of the old one are lost.
     pub(super) fn replace_port(&mut self, port: P) -> P {
         self.queue = SendQueue::default();
         self.looked = None;
@@ -140,10 +140,10 @@ impl<P: Port> Connection<P> {
         self.port.now()
     }
 
-    /// [`wait_by`](Self::wait_by) without an end.
+    /// [`wait_by`](Self::wait_by) without a deadline.
     ///
     /// # Errors
-    /// As there.
+    /// As for [`wait_by`](Self::wait_by).
     pub(super) fn wait<T>(
         &mut self,
         doing: &'static str,
@@ -152,11 +152,11 @@ impl<P: Port> Connection<P> {
         self.wait_by(doing, Duration::MAX, each)
     }
 
-    /// Moves bytes and passes each event to `each`, `None` at least every 20 ms of the port's clock and at `end`, until it breaks.
-    /// No other loop of this crate waits for a robot.
+    /// Moves bytes and passes each event to `each` until it breaks; passes `None` at least every 20 ms of the port's clock and
+    /// at `end`. This is the only waiting loop of the crate.
     ///
     /// # Errors
-    /// The port's, and those of `each`.
+    /// Errors of the port and of `each`.
     pub(super) fn wait_by<T>(
         &mut self,
         doing: &'static str,
@@ -182,7 +182,7 @@ impl<P: Port> Connection<P> {
     /// Waits for the event that ends `ticket`.
     ///
     /// # Errors
-    /// The ticket's, the port's; [`LinkError::Dropped`] if the caller's [`Callbacks::halt`] ended the wait.
+    /// Errors of the ticket and the port; [`LinkError::Dropped`] if the caller's [`Callbacks::halt`] ended the wait.
     pub(super) fn outcome(
         &mut self,
         ticket: Ticket,
@@ -215,17 +215,17 @@ impl<P: Port> Connection<P> {
         })
     }
 
-    /// Sends a stop and waits for what ends it. An e-stop that the caller requests meanwhile takes its place.
+    /// Sends a stop and waits for the event that ends it. An e-stop requested meanwhile replaces it.
     ///
     /// # Errors
-    /// No reply, or the port's.
+    /// No reply, or an error of the port.
     pub(super) fn halt(&mut self, halt: Halt, doing: &'static str) -> Result<Event, LinkError> {
         let mut halt = match self.requested_halt() {
             Some(Halt::EStop) => Halt::EStop,
             _ => halt,
         };
         let mut ticket = self.session.request(self.now(), halt.into());
-        // Telemetry from before the stop says nothing about the motion after it.
+        // Telemetry from before the stop does not describe the motion after it.
         self.latest = None;
         self.wait(doing, |connection, event| {
             match event {
@@ -250,7 +250,7 @@ impl<P: Port> Connection<P> {
         self.callbacks.halt.as_mut().and_then(|halt| halt())
     }
 
-    /// Moves bytes until an event comes or `until` has passed.
+    /// Moves bytes until an event arrives or `until` has passed.
     fn step(&mut self, until: Duration, doing: &'static str) -> Result<Option<Event>, LinkError> {
         let fail = |source| LinkError::Port { doing, source };
         loop {
@@ -294,7 +294,7 @@ impl<P: Port> Connection<P> {
         }
     }
 
-    /// Reports a silence that has become long, and its end.
+    /// Reports a long silence, and its end.
     fn watch_silence(&mut self, doing: &'static str) {
         let now = self.now();
         let heard = self.session.last_heard();

@@ -1,4 +1,4 @@
-//! One method for each request: the numbers of the program turned into those of the wire, the answer's kind checked.
+//! One method per request: converts units to those of the wire and checks the kind of the reply.
 
 use std::ops::ControlFlow;
 use std::time::Duration;
@@ -12,15 +12,15 @@ use super::{Halt, Robot, StoppedBy, stopped_by};
 use crate::port::Port;
 use crate::session::LinkError;
 
-/// Times that a robot is asked whether it has stored something, and the time between.
+/// Number of status requests before storing counts as failed; their interval follows.
 const STORE_LOOKS: u32 = 25;
 const STORE_LOOK: Duration = Duration::from_millis(200);
 
 impl<P: Port> Robot<P> {
-    /// What the robot is doing.
+    /// Status of the robot.
     ///
     /// # Errors
-    /// The link's.
+    /// Errors of the link.
     pub fn status(&mut self) -> Result<Status, LinkError> {
         let doing = "asking for the status";
         match self.ask(Request::Status, doing)? {
@@ -29,10 +29,10 @@ impl<P: Port> Robot<P> {
         }
     }
 
-    /// What the robot received, refused and dropped.
+    /// Counts of received, refused and dropped frames at the robot.
     ///
     /// # Errors
-    /// The link's.
+    /// Errors of the link.
     pub fn counters(&mut self) -> Result<Counters, LinkError> {
         let doing = "asking for the robot's counters";
         match self.ask(Request::Counters, doing)? {
@@ -41,10 +41,10 @@ impl<P: Port> Robot<P> {
         }
     }
 
-    /// The configuration in force.
+    /// Configuration in force.
     ///
     /// # Errors
-    /// The link's.
+    /// Errors of the link.
     pub fn configuration(&mut self) -> Result<Configuration, LinkError> {
         let doing = "asking for the configuration";
         match self.ask(Request::Configuration, doing)? {
@@ -56,15 +56,15 @@ impl<P: Port> Robot<P> {
     /// Sets geometry, drag and limits; only while the robot is stopped.
     ///
     /// # Errors
-    /// [`LinkError::Refused`] for numbers that make no swimmer or loosen the firmware's limits, and the link's.
+    /// [`LinkError::Refused`] if the values form no valid swimmer or exceed the firmware's limits, and errors of the link.
     pub fn configure(&mut self, configuration: Configuration) -> Result<(), LinkError> {
         self.order(Request::Configure(configuration), "configuring the robot")
     }
 
-    /// The map of one servo.
+    /// Map of one servo.
     ///
     /// # Errors
-    /// The link's.
+    /// Errors of the link.
     pub fn servo(&mut self, joint: Joint) -> Result<ServoSettings, LinkError> {
         let doing = "asking for a servo's settings";
         match self.ask(Request::Servo(joint), doing)? {
@@ -76,15 +76,15 @@ impl<P: Port> Robot<P> {
     /// Sets the map of one servo; only while the robot is stopped.
     ///
     /// # Errors
-    /// [`LinkError::Refused`] for pulses outside the window, and the link's.
+    /// [`LinkError::Refused`] for pulses outside the window, and errors of the link.
     pub fn set_servo(&mut self, joint: Joint, settings: ServoSettings) -> Result<(), LinkError> {
         self.order(Request::SetServo { joint, settings }, "setting up a servo")
     }
 
-    /// Sets the whole trim of one servo, radians; not while it moves.
+    /// Sets the total trim of one servo, rad; not during a motion.
     ///
     /// # Errors
-    /// [`LinkError::OutOfRange`], [`LinkError::Refused`], and the link's.
+    /// [`LinkError::OutOfRange`], [`LinkError::Refused`], and errors of the link.
     pub fn trim(&mut self, joint: Joint, radians: f64) -> Result<(), LinkError> {
         let doing = "trimming a servo";
         let unit = f64::from(ANGLE_UNIT_RAD);
@@ -104,12 +104,11 @@ impl<P: Port> Robot<P> {
         self.order(Request::Trim { joint, trim }, doing)
     }
 
-    /// Turns pulses on, at the last commanded angles; the servos may jump there. With `clear_estop` a latched e-stop is
-    /// cleared first.
+    /// Switches the pulses on at the last commanded angles; the servos may jump there. `clear_estop` clears a latched e-stop
+    /// first.
     ///
     /// # Errors
-    /// [`LinkError::Refused`] when an e-stop is latched and not cleared, when the battery is low or after three resets; and
-    /// the link's.
+    /// [`LinkError::Refused`] if an e-stop stays latched, the battery is low, or after three resets; and errors of the link.
     pub fn arm(&mut self, clear_estop: bool) -> Result<(), LinkError> {
         if clear_estop {
             let status = self.status()?;
@@ -120,28 +119,28 @@ impl<P: Port> Robot<P> {
         self.order(Request::Arm, "arming")
     }
 
-    /// Table and settings that the robot holds now.
+    /// Table and settings that the robot holds. Without a table, its checksum is 0.
     ///
     /// # Errors
-    /// The link's. A robot without a table has a checksum of 0.
+    /// Errors of the link.
     pub fn held(&mut self) -> Result<Checked, LinkError> {
         Ok(self.status()?.held())
     }
 
-    /// Starts to play the table that the robot holds: `cycles` cycles (0: without end) of `period` each. Returns when the robot
-    /// has begun.
+    /// Plays the robot's table: `cycles` cycles (0: endless) of `period` each. Returns when the play has begun.
     ///
     /// # Errors
-    /// [`LinkError::Refused`] when it is not armed, holds no table or the table is too fast at this period; and the link's.
+    /// [`LinkError::Refused`] if the robot is not armed, has no table or the table is too fast at this period; and errors of
+    /// the link.
     pub fn play(&mut self, cycles: u32, period: Duration, detached: bool) -> Result<(), LinkError> {
         let checked = self.held()?;
         self.play_checked(cycles, period, detached, checked)
     }
 
-    /// [`play`](Self::play) of the table and with the settings that were checked.
+    /// [`play`](Self::play) with the table and settings that were checked.
     ///
     /// # Errors
-    /// As [`play`](Self::play), and [`LinkError::Refused`] when the robot holds another table or other settings.
+    /// As for [`play`](Self::play), and [`LinkError::Refused`] if the robot holds another table or other settings.
     pub fn play_checked(
         &mut self,
         cycles: u32,
@@ -168,34 +167,34 @@ impl<P: Port> Robot<P> {
         self.order(Request::Play(play), doing)
     }
 
-    /// Holds the pose within a play. Detached: without a link too, for at most 60 s in all, then the robot stops.
+    /// Pauses a play at its pose. Detached: also without a link, for at most 60 s in total; then the robot stops.
     ///
     /// # Errors
-    /// [`LinkError::Refused`] when nothing plays, and the link's.
+    /// [`LinkError::Refused`] if nothing plays, and errors of the link.
     pub fn pause(&mut self, detached: bool) -> Result<(), LinkError> {
         self.order(Request::Pause { detached }, "pausing")
     }
 
-    /// Goes on after a pause.
+    /// Resumes a paused play.
     ///
     /// # Errors
-    /// [`LinkError::Refused`] when nothing is paused, and the link's.
+    /// [`LinkError::Refused`] if nothing is paused, and errors of the link.
     pub fn resume(&mut self) -> Result<(), LinkError> {
         self.order(Request::Resume, "resuming")
     }
 
-    /// Ramps to neutral and drops the pulses, from every state. Says what ended the motion.
+    /// Ramps to neutral and switches the pulses off, from every state. Returns the cause that ended the motion.
     ///
     /// # Errors
-    /// The link's.
+    /// Errors of the link.
     pub fn stop(&mut self) -> Result<StoppedBy, LinkError> {
         self.halt(Halt::Stop, "stopping")
     }
 
-    /// Drops the pulses at once, latched until cleared. Says what ended the motion.
+    /// Switches the pulses off at once, latched until cleared. Returns the cause that ended the motion.
     ///
     /// # Errors
-    /// The link's.
+    /// Errors of the link.
     pub fn estop(&mut self) -> Result<StoppedBy, LinkError> {
         self.halt(Halt::EStop, "e-stopping")
     }
@@ -208,27 +207,27 @@ impl<P: Port> Robot<P> {
         Ok(by)
     }
 
-    /// Clears the e-stops that the robot counts now, to Stopped, without arming.
+    /// Clears the present count of e-stops; the robot enters Stopped, without arming.
     ///
     /// # Errors
-    /// [`LinkError::Refused`] while pulses are on, and the link's.
+    /// [`LinkError::Refused`] while pulses are on, and errors of the link.
     pub fn clear_estop(&mut self) -> Result<(), LinkError> {
         let count = self.status()?.estops;
         self.clear_estops(count)
     }
 
-    /// Clears as many e-stops as were counted in a status; another that came since stays latched.
+    /// Clears the number of e-stops in a status; a later e-stop stays latched.
     ///
     /// # Errors
-    /// As [`clear_estop`](Self::clear_estop), and [`LinkError::Refused`] after another e-stop.
+    /// As for [`clear_estop`](Self::clear_estop), and [`LinkError::Refused`] after another e-stop.
     pub fn clear_estops(&mut self, count: u32) -> Result<(), LinkError> {
         self.order(Request::ClearEStop { count }, "clearing the e-stop")
     }
 
-    /// Sends the robot into its chip's boot loader. The answer comes before it leaves; then the port is dead.
+    /// Enters the chip's boot loader. The reply is sent first; afterwards the port is dead.
     ///
     /// # Errors
-    /// [`LinkError::Refused`] unless it is stopped and somebody is at it, and the link's.
+    /// [`LinkError::Refused`] unless the robot is stopped and a person is present, and errors of the link.
     pub fn enter_boot_loader(&mut self) -> Result<(), LinkError> {
         self.order(Request::EnterBootLoader, "asking for the boot loader")
     }
@@ -236,7 +235,7 @@ impl<P: Port> Robot<P> {
     /// Presence, short starts and the configuration as built.
     ///
     /// # Errors
-    /// The link's.
+    /// Errors of the link.
     pub fn bench(&mut self) -> Result<BenchStatus, LinkError> {
         let doing = "asking for presence and short starts";
         match self.ask(Request::Bench, doing)? {
@@ -245,10 +244,10 @@ impl<P: Port> Robot<P> {
         }
     }
 
-    /// The pulses that a servo's end stops allow.
+    /// Pulses that a servo's end stops allow.
     ///
     /// # Errors
-    /// The link's.
+    /// Errors of the link.
     pub fn pulse_range(&mut self, joint: Joint) -> Result<PulseRange, LinkError> {
         let doing = "asking for a servo's pulse range";
         match self.ask(Request::PulseRange(joint), doing)? {
@@ -257,10 +256,10 @@ impl<P: Port> Robot<P> {
         }
     }
 
-    /// Sets them; only while the robot is stopped. Angles beyond are refused with the gait that has them.
+    /// Sets the pulse range of a servo; only while the robot is stopped. Gaits beyond it are refused.
     ///
     /// # Errors
-    /// [`LinkError::Refused`] for a range that leaves out neutral or the firmware's window, and the link's.
+    /// [`LinkError::Refused`] for a range that excludes neutral or exceeds the firmware's window, and errors of the link.
     pub fn set_pulse_range(&mut self, joint: Joint, range: PulseRange) -> Result<(), LinkError> {
         let request = Request::SetPulseRange { joint, range };
         self.order(request, "setting a servo's pulse range")
@@ -269,15 +268,15 @@ impl<P: Port> Robot<P> {
     /// Allows arming again after three resets in 60 s.
     ///
     /// # Errors
-    /// [`LinkError::Refused`] before 60 s of uptime, and the link's.
+    /// [`LinkError::Refused`] before 60 s of uptime, and errors of the link.
     pub fn clear_resets(&mut self) -> Result<(), LinkError> {
         self.order(Request::ClearResets, "clearing the latch of resets")
     }
 
-    /// The message of the crash before the last start; empty where there is none.
+    /// Message of the crash before the last start; empty if there was none.
     ///
     /// # Errors
-    /// The link's.
+    /// Errors of the link.
     pub fn crash_message(&mut self) -> Result<String, LinkError> {
         let doing = "asking for the crash message";
         match self.ask(Request::CrashMessage, doing)? {
@@ -286,10 +285,10 @@ impl<P: Port> Robot<P> {
         }
     }
 
-    /// The active table, named by its checksum.
+    /// Active table, identified by its checksum.
     ///
     /// # Errors
-    /// The link's.
+    /// Errors of the link.
     pub fn table(&mut self) -> Result<Option<TableInfo>, LinkError> {
         let doing = "asking for the table";
         match self.ask(Request::Table, doing)? {
@@ -298,12 +297,12 @@ impl<P: Port> Robot<P> {
         }
     }
 
-    /// Sets, changes or removes the key that the robot asks for, waits until it is stored, and greets with it. The key
-    /// crosses the wire in the clear: over a cable, at the bench.
+    /// Sets, changes or removes the robot's key, waits until it is stored, and greets with it. The key crosses the wire
+    /// unencrypted: use a cable at the bench.
     ///
     /// # Errors
-    /// [`LinkError::Refused`] unless the robot is stopped, or where it has another key; [`LinkError::NotStored`] where it
-    /// keeps the key only until its power is cut; and the link's.
+    /// [`LinkError::Refused`] if the robot is not stopped or has another key; [`LinkError::NotStored`] if the key would be lost
+    /// at a power cut; and errors of the link.
     pub fn set_key(&mut self, key: Option<Key>) -> Result<(), LinkError> {
         let doing = "setting the key";
         self.order(Request::SetKey(key), doing)?;
@@ -312,10 +311,10 @@ impl<P: Port> Robot<P> {
         self.wait_until_stored(doing)
     }
 
-    /// Waits until the robot has written its settings and its table to flash. `doing` is what was being stored, for the error.
+    /// Waits until the robot has written its settings and its table to flash. `doing` describes the operation for the error.
     ///
     /// # Errors
-    /// [`LinkError::NotStored`] if it has not within a few seconds, and the link's.
+    /// [`LinkError::NotStored`] after a few seconds, and errors of the link.
     pub fn wait_until_stored(&mut self, doing: &'static str) -> Result<(), LinkError> {
         for _ in 0..STORE_LOOKS {
             if !self.status()?.flags.contains(Flags::UNSAVED) {
@@ -326,11 +325,11 @@ impl<P: Port> Robot<P> {
         Err(LinkError::NotStored { doing })
     }
 
-    /// A request that is answered by Done and nothing else.
+    /// Sends a request whose only valid reply is Done.
     fn order(&mut self, request: Request, doing: &'static str) -> Result<(), LinkError> {
         match self.ask(request, doing)? {
             Reply::Done => {
-                // What the robot told before it obeyed tells nothing of what it does now.
+                // Telemetry from before the request does not describe the present state.
                 self.connection.latest = None;
                 Ok(())
             }

@@ -1,6 +1,6 @@
-//! Several tables played one after the other without a pause. The robot has room for two: while one plays, the next is sent
-//! into the other's place, and the robot goes over to it by itself when the last cycle is done, so that no timing of the link's
-//! matters. Where the next table is not there by then, the robot comes to rest as after any play, and that is told.
+//! Sequence of tables without pauses. The robot holds two: while one plays, the next is uploaded to the staging table, and the
+//! robot changes to it at the end of the last cycle, independent of link timing. If the next table is late, the robot comes to
+//! rest as after any play, and the sequence fails.
 
 use std::ops::ControlFlow;
 use std::time::Duration;
@@ -13,15 +13,15 @@ use crate::port::Port;
 use crate::session::{Event, Follower, LinkError};
 
 const DOING: &str = "uploading the next gait of the playlist";
-/// Beyond the end of the play before, an upload is waited for no longer than this.
+/// Longest wait for an upload beyond the end of the previous play.
 const GRACE: Duration = Duration::from_secs(5);
 
 /// One table of a sequence.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Leg {
-    /// Four bytes a knot; all tables of a sequence start at the same knot.
+    /// Bytes of the table, four per knot. All tables of a sequence start at the same knot.
     pub table: Vec<u8>,
-    /// Cycles, at least one.
+    /// Number of cycles, at least one.
     pub cycles: u32,
     /// Duration of a cycle.
     pub period: Duration,
@@ -43,30 +43,30 @@ impl Leg {
     }
 }
 
-/// What a caller sees while a sequence plays.
+/// Progress report of a sequence.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SequenceProgress<'a> {
-    /// Number of the leg that plays, from 0.
+    /// Index of the playing leg, from 0.
     pub leg: usize,
-    /// What the robot told last.
+    /// Latest telemetry.
     pub telemetry: Option<&'a Telemetry>,
 }
 
-/// A sequence under way: its first leg plays already.
+/// Sequence in progress; its first leg already plays.
 #[derive(Debug)]
 pub struct Sequence {
     legs: Vec<Leg>,
-    /// Legs that the robot holds or has played.
+    /// Number of legs that the robot holds or has played.
     accepted: usize,
-    /// The leg that plays.
+    /// Index of the playing leg.
     playing: usize,
-    /// Hash of the settings that all legs were checked for.
+    /// Hash of the settings for which all legs were checked.
     settings_crc32: u32,
 }
 
 impl Sequence {
-    /// Sequence of these legs, of which the first has been uploaded and plays. The settings that all were checked for are
-    /// those of this hash ([`link_protocol::settings_crc32`]).
+    /// Returns a sequence of these legs, the first of which has been uploaded and plays. `settings_crc32`
+    /// ([`link_protocol::settings_crc32`]) identifies the settings for which all were checked.
     pub fn playing_first(legs: Vec<Leg>, settings_crc32: u32) -> Self {
         Self {
             legs,
@@ -76,13 +76,13 @@ impl Sequence {
         }
     }
 
-    /// Sends what is to follow, in time, and waits for the end of the last cycle of the last leg. `watch` is asked at least
-    /// every 20 ms of the port's clock; breaking off returns `None` and leaves the robot as it is, and the sequence can be gone
-    /// on with.
+    /// Uploads the next legs in time and waits for the end of the last cycle of the last leg. `watch` runs at least every 20 ms
+    /// of the port's clock. If it breaks, the call returns `None`, leaves the robot unchanged, and the sequence can be
+    /// continued.
     ///
     /// # Errors
-    /// [`LinkError::OutOfStep`] where a table was not there in time: the robot has come to rest after the leg before;
-    /// [`LinkError::StoppedEarly`] and the link's own.
+    /// [`LinkError::OutOfStep`] if a table was late and the robot came to rest after the previous leg;
+    /// [`LinkError::StoppedEarly`] and errors of the link.
     pub fn go_on<P: Port>(
         &mut self,
         robot: &mut Robot<P>,
@@ -113,7 +113,7 @@ impl Sequence {
         Err(self.out_of_step())
     }
 
-    /// Until the robot has gone over to the leg that was sent last.
+    /// Waits until the robot has changed to the leg that was uploaded last.
     fn wait_for_room<P: Port>(
         &mut self,
         robot: &mut Robot<P>,
@@ -190,7 +190,7 @@ impl Sequence {
         })?;
         match sent {
             None => Ok(ControlFlow::Break(())),
-            // Space was seen: if a table waits, it is this one, and the reply was lost.
+            // The staging table was free before, so a waiting table is this one, and its reply was lost.
             Some(
                 Ok(())
                 | Err(LinkError::Refused {
@@ -209,7 +209,7 @@ impl Sequence {
         }
     }
 
-    /// Telemetry from before the robot took the table says nothing about whether it still waits.
+    /// Discards telemetry from before the robot accepted the table: it does not show if the table still waits.
     fn accept<P: Port>(&mut self, robot: &mut Robot<P>) -> ControlFlow<()> {
         self.accepted += 1;
         robot.connection.latest = None;
@@ -225,10 +225,10 @@ impl Sequence {
 }
 
 impl<P: Port> Robot<P> {
-    /// What the robot takes at least, from asking for an upload of `bytes` of table until it has checked it, while it plays:
-    /// checks are slower then, because the servos come first.
+    /// Shortest time from the request for an upload of `bytes` until the table is checked, during a play. Checks are slower
+    /// then, because the servos have priority.
     pub fn expected_upload_while_playing(&self, bytes: usize) -> Duration {
-        /// Of one knot; the brain's tests print it (`cargo test -p gait-player --test player follow -- --nocapture`).
+        /// Time per knot; a test prints it (`cargo test -p gait-player --test player follow -- --nocapture`).
         const CHECK_OF_A_KNOT: Duration = Duration::from_millis(9);
         let knots = u32::try_from(bytes / 4).unwrap_or(u32::MAX);
         self.expected_upload(bytes) + CHECK_OF_A_KNOT.saturating_mul(knots)

@@ -1,65 +1,65 @@
-//! Keep-alives: when the next may go out, and what it tells the robot.
+//! Keep-alives: their schedule, and the robot time that they echo.
 //!
-//! Each is answered, and what is unanswered lies on the way: in a module's buffer, ahead of any stop. So there is one at a
-//! time; only where the way itself is long, as many as it takes to be heard every [`KEEP_ALIVE`] over it, for the robot waits no
-//! longer than its lease. The shortest round trip says how long the way is: a queue makes others longer, not that one.
+//! Each keep-alive is answered, and unanswered ones may fill a module's buffer ahead of a stop. So only one is in flight; on a
+//! link with a long round trip, as many as needed for one every [`KEEP_ALIVE`], because the lease is fixed. The shortest round
+//! trip measures the link, since a queue lengthens only the others.
 //!
-//! One that is unanswered for twice as long was lost, and another takes its place: a few times quickly, for a line that drops
-//! every tenth frame must not lose the lease, then ever more slowly, for one that stands still fills its buffer.
+//! A keep-alive that is unanswered for twice as long counts as lost and is replaced. The first replacements are quick, so that
+//! a line that loses every tenth frame keeps the lease. Later ones back off, because a stalled line fills its buffer.
 
 use std::collections::VecDeque;
 use std::time::Duration;
 
 use super::round_trip::RoundTrip;
 
-/// Shortest time from one keep-alive to the next.
+/// Shortest interval between keep-alives.
 pub const KEEP_ALIVE: Duration = Duration::from_millis(50);
-/// The same while an upload has its share of the line.
+/// Shortest interval during an upload, which needs its share of the line.
 pub(super) const APART: Duration = Duration::from_millis(100);
-/// Shortest time after which one is lost.
+/// Shortest time after which a keep-alive counts as lost.
 const SHORTEST_WAIT: Duration = Duration::from_millis(80);
-/// Longest time, and the only one where nothing watches the lease.
+/// Longest such time, and the only one if no lease has to be kept.
 const LONGEST_WAIT: Duration = Duration::from_secs(3);
-/// So many in a row are replaced quickly.
+/// Number of consecutive quick replacements.
 const QUICK: u32 = 5;
-/// No legal way is longer, both ways together; a greeting that waited behind another host's bytes may have been.
+/// Longest legal round trip. A greeting may have taken longer because it waited behind another host's bytes.
 const LONGEST_WAY: Duration = Duration::from_millis(500);
 
-/// A keep-alive on its way.
+/// Keep-alive in flight.
 #[derive(Debug, Clone, Copy)]
 struct Sent {
     at: Duration,
     host_us: u64,
 }
 
-/// The keep-alives of a session.
+/// Keep-alives of a session.
 #[derive(Debug, Default)]
 pub(super) struct Beats {
     unanswered: VecDeque<Sent>,
     last: Option<Duration>,
-    /// Written off in a row.
+    /// Consecutive losses.
     lost: u32,
-    /// The latest time of the robot's clock that was heard, µs.
+    /// Latest received time of the robot's clock, µs.
     heard_us: u64,
 }
 
 impl Beats {
-    /// The robot was heard to say what time it is.
+    /// Records a received time of the robot.
     pub(super) fn heard(&mut self, robot_us: u64) {
         self.heard_us = self.heard_us.max(robot_us);
     }
 
-    /// The robot has answered a request: bytes reach it, so that what is lost is replaced quickly again.
+    /// Records a reply: the robot receives, so losses are replaced quickly again.
     pub(super) fn reached(&mut self) {
         self.lost = 0;
     }
 
-    /// What the next one tells of that.
+    /// Robot time that the next keep-alive echoes, µs.
     pub(super) fn heard_us(&self) -> u64 {
         self.heard_us
     }
 
-    /// When the next one may go out. `alone`: nothing watches the lease, so there is never more than one on its way.
+    /// Earliest time of the next keep-alive. `alone`: no lease has to be kept, so at most one is in flight.
     pub(super) fn due(&self, trip: &RoundTrip, alone: bool, uploading: bool) -> Duration {
         let Some(last) = self.last else {
             return Duration::ZERO;
@@ -80,7 +80,7 @@ impl Beats {
         }
     }
 
-    /// How long the oldest may be unanswered.
+    /// Time after which the oldest keep-alive counts as lost.
     fn wait(&self, trip: &RoundTrip, alone: bool) -> Duration {
         if alone {
             return LONGEST_WAIT;
@@ -89,8 +89,7 @@ impl Beats {
         ((way(trip) * 2).max(SHORTEST_WAIT) * (1 << slower)).min(LONGEST_WAIT)
     }
 
-    /// Notes that one goes out now, under this time of the host's clock. What has waited for its answer for too long is
-    /// written off.
+    /// Records a keep-alive sent now, with this time of the host's clock. Removes the oldest one if it counts as lost.
     pub(super) fn sent(&mut self, trip: &RoundTrip, alone: bool, now: Duration, host_us: u64) {
         let wait = self.wait(trip, alone);
         if self
@@ -105,7 +104,7 @@ impl Beats {
         self.unanswered.push_back(Sent { at: now, host_us });
     }
 
-    /// The answer to the one of this time came: those before were answered too, or never will be.
+    /// Records the reply to the keep-alive of this time. Earlier ones were answered too, or are lost.
     pub(super) fn answered(&mut self, host_us: u64) {
         let place = self
             .unanswered
@@ -118,7 +117,7 @@ impl Beats {
     }
 }
 
-/// How long the way is, there and back.
+/// Round trip of the link without queues.
 fn way(trip: &RoundTrip) -> Duration {
     trip.shortest().unwrap_or_default().min(LONGEST_WAY)
 }
@@ -129,7 +128,7 @@ mod tests {
 
     const MS: Duration = Duration::from_millis(1);
 
-    /// Sends whatever may go out for a while; when each did.
+    /// Sends keep-alives as scheduled; returns their times.
     fn run(beats: &mut Beats, trip: &RoundTrip, alone: bool, until: Duration) -> Vec<u128> {
         let (mut now, mut sent) = (Duration::ZERO, Vec::new());
         while now < until {
@@ -147,7 +146,7 @@ mod tests {
         let mut trip = RoundTrip::default();
         trip.sample(MS * 20);
         let mut beats = Beats::default();
-        // Unanswered: only the time-outs of a lost frame.
+        // Without replies, only the time-outs of lost frames apply.
         let sent = run(&mut beats, &trip, false, MS * 1_400);
         assert_eq!(sent, [0, 80, 160, 240, 320, 400, 560, 880]);
         beats.answered(880_000);
@@ -163,7 +162,7 @@ mod tests {
         assert_eq!(sent, [0, 50, 100, 150, 200, 250, 300, 350, 400]);
         let sent = run(&mut Beats::default(), &trip, true, MS * 800);
         assert_eq!(sent, [0]);
-        // A queue makes round trips longer, and yet no more go out.
+        // A queue lengthens round trips, but does not add keep-alives.
         trip.sample(MS * 9_000);
         let sent = run(&mut Beats::default(), &trip, false, MS * 800);
         assert_eq!(sent, [0, 50, 100, 150, 200, 250, 300, 350, 400]);

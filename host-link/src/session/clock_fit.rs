@@ -1,4 +1,4 @@
-//! The robot's clock as the host knows it: a straight line through the quickest pings, with its uncertainty, so that camera
+//! Fit of the robot's clock to the host's: a straight line through the fastest pings, with its uncertainty, so that camera
 //! frames can be placed on the robot's time.
 
 use serde::{Deserialize, Serialize};
@@ -7,35 +7,35 @@ use std::time::Duration;
 
 use link_protocol::Pong;
 
-/// Pings that are remembered; one a second, so about four minutes.
+/// Number of stored pings: at one per second, about four minutes.
 const REMEMBERED: usize = 256;
-/// The first ones are taken as they come, for a first fit.
+/// Number of initial pings that are all stored, for a first fit.
 const QUICK_PINGS: usize = 8;
 const PING_EVERY: Duration = Duration::from_secs(1);
 
-/// A straight line from the host's clock to the robot's: `robot = robot_at_origin + rate · (host − origin)`, seconds.
+/// Linear map from the host's clock to the robot's: `robot = robot_at_origin + rate · (host − origin)`, seconds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ClockFit {
-    /// A host time near the middle of the pings, s.
+    /// Host time near the middle of the pings, s.
     pub origin: f64,
-    /// The robot's clock then, s.
+    /// Robot time at the origin, s.
     pub robot_at_origin: f64,
     /// Robot seconds per host second.
     pub rate: f64,
-    /// Bound of the error of a converted time within the span of the pings, s: half of the shortest round trip (how it
-    /// divides into the two ways cannot be known) plus the scatter about the line.
+    /// Error bound of a converted time within the span of the pings, s: half of the shortest round trip (its division into the
+    /// two directions is unknown) plus the scatter about the line.
     pub uncertainty: f64,
-    /// Pings used.
+    /// Number of pings in the fit.
     pub pings: usize,
 }
 
 impl ClockFit {
-    /// The robot's clock at a time of the host's clock.
+    /// Robot time at a time of the host's clock, s.
     pub fn robot_time(&self, host: Duration) -> f64 {
         self.robot_at_origin + self.rate * (host.as_secs_f64() - self.origin)
     }
 
-    /// The host's clock at a time of the robot's clock, s.
+    /// Host time at a time of the robot's clock, s.
     pub fn host_time(&self, robot: f64) -> f64 {
         self.origin + (robot - self.robot_at_origin) / self.rate
     }
@@ -43,28 +43,30 @@ impl ClockFit {
 
 #[derive(Debug, Clone, Copy)]
 struct Sample {
-    /// Host clock halfway through the trip, s.
+    /// Host clock at the middle of the round trip, s.
     host: f64,
-    /// Robot clock halfway through its stay, s.
+    /// Robot clock at the middle of the robot's processing, s.
     robot: f64,
-    /// Time under way, both ways, without the stay on the robot, s.
+    /// Round trip without the robot's processing time, s.
     trip: f64,
 }
 
-/// Collects pongs, for a session or for whoever watches one.
+/// Collector of pongs, for a session or an observer of one.
 #[derive(Debug, Default)]
 pub struct ClockSamples {
     samples: VecDeque<Sample>,
-    /// When the last one that was taken had been sent.
+    /// Time at which the last stored ping was sent.
     last_sent: Duration,
 }
 
 impl ClockSamples {
-    /// Takes a pong that arrived at `now` on the host's clock; after the first ones, the quickest of each second. Returns its time under way.
+    /// Adds a pong that arrived at `now` on the host's clock. After the first ones, only the fastest of each second is kept.
+    /// Returns its round trip.
     pub fn push(&mut self, pong: &Pong, now: Duration) -> Option<Duration> {
         let sent = Duration::from_micros(pong.host_us);
         let trip = Self::time_under_way(pong, now)?;
-        // Of each later second the quickest: keep-alives and telemetry beat, and one in step with the other waits for it.
+        // Keep-alives and telemetry beat against each other, and some pings wait for telemetry, so only the fastest of each
+        // second counts.
         let within = self.samples.len() > QUICK_PINGS && sent < self.last_sent + PING_EVERY;
         match self.samples.back() {
             Some(last) if within && trip.as_secs_f64() >= last.trip => return Some(trip),
@@ -82,20 +84,20 @@ impl ClockSamples {
         Some(trip)
     }
 
-    /// Forgets everything: the robot has restarted, or the port's clock is another.
+    /// Discards all samples: the robot has restarted, or the port's clock has changed.
     pub fn clear(&mut self) {
         self.samples.clear();
         self.last_sent = Duration::ZERO;
     }
 
-    /// Time under way of a pong that arrived at `now` on the host's clock; `None` where its times are none.
+    /// Round trip of a pong that arrived at `now` on the host's clock. Returns `None` if its times are inconsistent.
     fn time_under_way(pong: &Pong, now: Duration) -> Option<Duration> {
         let sent = Duration::from_micros(pong.host_us);
         let stay = Duration::from_micros(pong.sent_us.checked_sub(pong.received_us)?);
         now.checked_sub(sent)?.checked_sub(stay)
     }
 
-    /// The line through the quickest half of the pings; `None` before the first.
+    /// Line through the fastest half of the pings. Returns `None` before the first.
     pub fn fit(&self) -> Option<ClockFit> {
         let mut quickest: Vec<Sample> = self.samples.iter().copied().collect();
         quickest.sort_by(|a, b| a.trip.total_cmp(&b.trip));
@@ -110,7 +112,7 @@ impl ClockSamples {
             .map(|s| (s.host - origin) * (s.robot - robot))
             .sum::<f64>()
             / spread;
-        // Two crystals differ by far less than a thousandth; a short span says nothing about the rate yet.
+        // Two crystals differ by far less than a thousandth; a short span does not determine the rate.
         let rate = if slope.is_finite() && (slope - 1.0).abs() < 1e-3 {
             slope
         } else {

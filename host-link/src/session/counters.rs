@@ -1,4 +1,4 @@
-//! What happened on the link so far, as an error shows it and a dashboard draws it.
+//! Link statistics, for errors and dashboards.
 
 use std::fmt;
 use std::time::Duration;
@@ -6,43 +6,43 @@ use std::time::Duration;
 use link_protocol::DecodeCounters;
 use serde::{Deserialize, Serialize};
 
-/// Counts of everything that crossed the link, or should have.
+/// Counts of frames and bytes on the link.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct LinkCounters {
     /// Frames sent, of any kind.
     pub frames_sent: u64,
     /// Bytes sent.
     pub bytes_sent: u64,
-    /// Bytes received, broken ones too.
+    /// Bytes received, including corrupt ones.
     pub bytes_received: u64,
-    /// What became of the frames received.
+    /// Decoder counts of received frames.
     pub received: DecodeCounters,
-    /// Frames sent again because no answer came in time.
+    /// Frames repeated because there was no reply in time.
     pub retransmissions: u64,
     /// Keep-alives sent.
     pub keep_alives: u64,
-    /// Frames that only hosts send: the line gives back what it is given.
+    /// Frames that only hosts send: an echo of the line.
     #[serde(default)]
     pub echoed: u64,
-    /// Answers without the signature that the key asks for, from a robot that has not shown yet that it has the key.
+    /// Replies without the required signature, from a robot that has not yet proved that it has the key.
     #[serde(default)]
     pub unsigned: u64,
-    /// Answers that were not signed, or not with the key, or played back, from one that had; dropped.
+    /// Replies with a missing, wrong or replayed signature, from a robot that has proved it; dropped.
     #[serde(default)]
     pub forged: u64,
     /// Frames of another session, dropped.
     pub foreign: u64,
-    /// Replies to nothing that still waits, dropped.
+    /// Replies without a pending request, dropped.
     pub unmatched: u64,
     /// Telemetry delivered.
     pub telemetry: u64,
-    /// Telemetry older than what was delivered before, dropped.
+    /// Telemetry that arrived out of order, dropped.
     pub late_telemetry: u64,
     /// Sessions opened.
     pub sessions: u64,
-    /// Requests given up.
+    /// Requests that failed after all attempts.
     pub given_up: u64,
-    /// Smoothed round trip; `None` before the first answer.
+    /// Smoothed round trip; `None` before the first reply.
     pub round_trip: Option<Duration>,
 }
 

@@ -1,4 +1,4 @@
-//! What time makes a session do: retransmit, give up, send the next piece, keep the lease fed.
+//! Time-driven part of a session: retransmissions, time-outs, chunks and keep-alives.
 
 use std::time::Duration;
 
@@ -15,18 +15,18 @@ use super::{
     describe,
 };
 
-/// Longest wait between two sendings of a stop.
+/// Longest wait between two attempts of a stop.
 const STOP_WAIT: Duration = Duration::from_millis(200);
-/// Shortest time for which a stop is tried.
+/// Shortest time for which a stop is repeated.
 const STOP_PATIENCE: Duration = Duration::from_secs(3);
-/// Times an upload may begin anew because the robot lost it.
+/// Number of times an upload may restart because the robot lost it.
 const RENEWALS: u32 = 8;
-/// Bytes on the wire of the longest chunk's frame.
+/// Length of the longest chunk's frame on the wire, bytes.
 pub(super) const CHUNK_COST: usize = 126;
 
 impl Session {
-    /// Does what is due at `now`. Call it after [`receive`](Self::receive) and when
-    /// [`next_deadline`](Self::next_deadline) has come; then send [`take_outgoing`](Self::take_outgoing).
+    /// Does the actions due at `now`. Call it after [`receive`](Self::receive) and at [`next_deadline`](Self::next_deadline);
+    /// then send [`take_outgoing`](Self::take_outgoing).
     pub fn poll(&mut self, now: Duration) {
         self.drive_greeting(now);
         self.drive_pending(now);
@@ -34,7 +34,7 @@ impl Session {
         self.feed_lease(now);
     }
 
-    /// When [`poll`](Self::poll) has something to do next, if no bytes come before.
+    /// Next time at which [`poll`](Self::poll) has work, unless bytes arrive earlier.
     pub fn next_deadline(&self) -> Option<Duration> {
         let (greeting, lease, open) = match &self.link {
             Link::Greeting(greeting) => (Some(greeting.next_try), None, false),
@@ -42,7 +42,7 @@ impl Session {
             Link::Closed => (None, None, false),
         };
         let request = match &self.pending {
-            // Without a session only a stop goes out: all else waits for the greeting to end.
+            // Without a session only a stop is sent; other requests wait for the greeting.
             Some(pending) => (open || pending.request.is_stop()).then_some(pending.next_try),
             None if self.busy > 0 && open => Some(self.hold_until),
             None => None,
@@ -68,7 +68,7 @@ impl Session {
             .min()
     }
 
-    /// Sends a first greeting under a new nonce.
+    /// Sends a first greeting with a new nonce.
     pub(super) fn greet(&mut self, ticket: Option<Ticket>, now: Duration) {
         let nonce = self.rng.random();
         let sequence = self.next_sequence();
@@ -83,7 +83,7 @@ impl Session {
         self.drive_greeting(now);
     }
 
-    /// Sends a request for the first time and keeps it until it is answered.
+    /// Sends a request for the first time and keeps it until it gets a reply.
     pub(super) fn put_under_way(&mut self, owner: Owner, request: Request, now: Duration) -> u16 {
         let sequence = self.next_sequence();
         self.pending = Some(Pending {
@@ -140,7 +140,7 @@ impl Session {
         self.send(sequence, &hello);
     }
 
-    /// There is no session: whatever waits ends here, but for a stop, which needs none.
+    /// Fails all waiting requests because there is no session. A stop needs none and stays.
     pub(super) fn fail_waiting(&mut self) {
         self.fail_unanswered(
             |request| !request.is_stop(),
@@ -202,7 +202,7 @@ impl Session {
         self.send(sequence, &message);
     }
 
-    /// Begin or Commit of an upload first, then what waits longest.
+    /// Sends the next request: Begin or Commit of an upload first, then the oldest in the queue.
     fn next_under_way(&mut self, now: Duration) {
         if now < self.hold_until {
             return;
@@ -266,7 +266,7 @@ impl Session {
         self.send_pieces(now);
     }
 
-    /// Fills the window at the pace of the line.
+    /// Fills the window of chunks at the speed of the line.
     fn send_pieces(&mut self, now: Duration) {
         while self.line_free <= now && self.window_has_room() {
             let Some(upload) = &self.upload else {
@@ -296,25 +296,25 @@ impl Session {
         }
     }
 
-    /// Another chunk fits what the robot's buffer may hold. While pulses are on, or may be, there is one at a time: whatever
-    /// the line's pace is, a stop waits behind no other.
+    /// Returns true if another chunk fits the robot's buffer. While pulses are on, or may be, only one is in flight, so that a
+    /// stop waits behind no other.
     fn window_has_room(&self) -> bool {
         let (Link::Open(hello), Some(upload)) = (&self.link, &self.upload) else {
             return false;
         };
         let room = usize::from(hello.limits.upload_window.min(hello.buffer));
         let in_flight = upload.window.in_flight();
-        // One piece at a time always fits, or a robot that advertises nothing could never be fed.
+        // One chunk is always allowed, even if the robot reports no buffer.
         in_flight == 0 || (self.pulses_off() && in_flight + CHUNK_COST <= room)
     }
 
-    /// The robot said so last.
+    /// Returns true if the latest report of the robot shows pulses off.
     fn pulses_off(&self) -> bool {
         self.told
             .is_some_and(|told| matches!(told.state, StateName::Stopped | StateName::EStopped))
     }
 
-    /// When the next keep-alive may go out.
+    /// Earliest time of the next keep-alive.
     fn beat_due(&self) -> Duration {
         let uploading = self
             .upload
@@ -323,7 +323,7 @@ impl Session {
         self.beats.due(&self.trip, self.unwatched(), uploading)
     }
 
-    /// The robot goes on without a link: nothing watches the lease.
+    /// Returns true if the robot continues without a link, so no lease has to be kept.
     fn unwatched(&self) -> bool {
         self.told
             .is_some_and(|told| told.flags.contains(Flags::DETACHED))
@@ -340,11 +340,11 @@ impl Session {
             host_us,
             heard_us: self.beats.heard_us(),
         });
-        // No request, so no number of its own: an hour of them would make the next request look old.
+        // A keep-alive takes no sequence number: an hour of them would make the next request look old.
         self.send(self.sequence, &beat);
     }
 
-    /// The robot has lost the upload: begin anew, from where it says, but not for ever.
+    /// Restarts an upload that the robot lost, from the offset that it reports, a limited number of times.
     pub(super) fn renew_upload(&mut self, error: LinkError) {
         let Some(upload) = &mut self.upload else {
             return;

@@ -1,4 +1,4 @@
-//! How a session fails, in sentences with numbers and advice.
+//! Errors of a session: messages with numbers and advice.
 
 use std::io;
 use std::time::Duration;
@@ -7,80 +7,80 @@ use link_protocol::{Flags, Refusal, StateName, StopCause, VersionName};
 
 use super::counters::LinkCounters;
 
-/// Why something asked of the robot did not happen. `doing` completes "while …".
+/// Reason why a request or an upload failed. `doing` completes "while …".
 #[derive(Debug, thiserror::Error)]
 pub enum LinkError {
-    /// The port itself failed.
+    /// The port failed.
     #[error("while {doing}: the port failed: {source}; check cable or pairing and connect again")]
     Port {
-        /// What was being done.
+        /// Operation in progress.
         doing: &'static str,
-        /// The system's words.
+        /// The system's error.
         source: io::Error,
     },
-    /// Nothing at all came back.
+    /// No reply.
     #[error(
         "while {doing}: no answer after {tries} tries in {} ms ({counters}){}",
         waited.as_millis(),
         no_answer_advice(counters)
     )]
     NoAnswer {
-        /// What was being done.
+        /// Operation in progress.
         doing: &'static str,
-        /// Times it was sent.
+        /// Number of attempts.
         tries: u32,
-        /// Time from the first sending to giving up.
+        /// Time from the first attempt to the failure.
         waited: Duration,
-        /// What crossed the link.
+        /// Counts of the link.
         counters: Box<LinkCounters>,
     },
-    /// The link fell silent during something that retries for as long as the robot is heard.
+    /// The link became silent during an operation without a limit on attempts.
     #[error(
         "while {doing}: nothing valid heard for {} ms ({counters}); bring the robot nearer or reconnect, then try again: an upload goes on where it was",
         silent.as_millis()
     )]
     Silent {
-        /// What was being done.
+        /// Operation in progress.
         doing: &'static str,
-        /// How long nothing was heard.
+        /// Duration of the silence.
         silent: Duration,
-        /// What crossed the link.
+        /// Counts of the link.
         counters: Box<LinkCounters>,
     },
-    /// The robot answers that it is at it, and does not finish.
+    /// The robot keeps replying that it is working, and does not finish.
     #[error(
         "while {doing}: the robot has answered for {} s that it is still working at it, which no request takes; look at its status, and restart it if it says nothing else",
         waited.as_secs()
     )]
     StillWorking {
-        /// What was being done.
+        /// Operation in progress.
         doing: &'static str,
-        /// Time since the request was first sent.
+        /// Time since the first attempt.
         waited: Duration,
     },
     /// The deadline passed although the link works.
     #[error("while {doing}: not done after {} ms ({done} of {total} bytes arrived; {counters}); try again: it goes on where it was", waited.as_millis())]
     Deadline {
-        /// What was being done.
+        /// Operation in progress.
         doing: &'static str,
-        /// The time that was given.
+        /// Time limit.
         waited: Duration,
-        /// Bytes that arrived.
+        /// Transferred bytes.
         done: usize,
-        /// Bytes in all.
+        /// Total bytes.
         total: usize,
-        /// What crossed the link.
+        /// Counts of the link.
         counters: Box<LinkCounters>,
     },
-    /// The robot said no.
+    /// The robot refused the request.
     #[error("while {doing}: the robot refuses: {refusal}")]
     Refused {
-        /// What was being done.
+        /// Operation in progress.
         doing: &'static str,
-        /// Its reason.
+        /// The robot's reason.
         refusal: Refusal,
     },
-    /// The versions of the protocol do not meet.
+    /// The protocol versions are incompatible.
     #[error(
         "the robot's firmware {firmware} speaks versions {} to {} of the protocol, this program {} to {}: {}",
         VersionName(*robot_min),
@@ -90,100 +90,100 @@ pub enum LinkError {
         if robot_current < host_min { "update the robot's firmware" } else { "update this program" }
     )]
     Version {
-        /// Lowest version the robot understands.
+        /// Lowest version that the robot supports.
         robot_min: u8,
-        /// Version the robot speaks.
+        /// Version of the robot.
         robot_current: u8,
-        /// Lowest version this program understands.
+        /// Lowest version that this program supports.
         host_min: u8,
-        /// Version this program speaks.
+        /// Version of this program.
         host_current: u8,
-        /// The robot's firmware.
+        /// Firmware of the robot.
         firmware: String,
     },
-    /// Same version, other messages: one end is a build from between two releases.
+    /// Equal versions with different messages: one end is a build between two releases.
     #[error(
         "the robot's firmware {firmware} and this program both speak version {} of the protocol but disagree on its messages (keys {robot_key:016x} and {host_key:016x}): build both from the same commit",
         VersionName(*version)
     )]
     Schema {
-        /// The version both speak.
+        /// Common version.
         version: u8,
-        /// The robot's schema key.
+        /// Schema key of the robot.
         robot_key: u64,
-        /// This program's schema key.
+        /// Schema key of this program.
         host_key: u64,
-        /// The robot's firmware.
+        /// Firmware of the robot.
         firmware: String,
     },
-    /// The robot's greeting names a board or a reason of its reset that was appended to the protocol since this program.
+    /// The robot's greeting has a board or a reset reason that is newer than this program.
     #[error(
         "the robot's firmware {firmware} is newer than this program and tells of itself what it does not know (a board, or a reason of its last reset): update this program"
     )]
     UnknownGreeting {
-        /// The robot's firmware.
+        /// Firmware of the robot.
         firmware: String,
     },
-    /// The robot's answer is one that was appended to the protocol since this program.
+    /// The robot's reply is newer than this program.
     #[error(
         "while {doing}: the robot gave an answer that this program does not know, so its firmware is newer: update this program; whether the robot did it, its status tells"
     )]
     UnknownAnswer {
-        /// What was being done.
+        /// Operation in progress.
         doing: &'static str,
     },
-    /// The robot no longer knows this session.
+    /// The session no longer exists on the robot.
     #[error(
         "while {doing}: the robot has opened another session: it restarted (do the servos pull its supply down?), or another program took it over; look at its status and connect again"
     )]
     SessionLost {
-        /// What was being done.
+        /// Operation in progress.
         doing: &'static str,
     },
-    /// A stop was sent before this was answered.
+    /// A stop was sent before the reply.
     #[error(
         "while {doing}: dropped because a stop was sent; whether the robot did it, its status tells"
     )]
     Dropped {
-        /// What was being done.
+        /// Operation in progress.
         doing: &'static str,
     },
-    /// Nobody has connected, or the connection failed.
+    /// There is no connection, or it failed.
     #[error("while {doing}: no session with the robot; connect first")]
     NotConnected {
-        /// What was being done.
+        /// Operation in progress.
         doing: &'static str,
     },
-    /// The robot's answers do not carry the tag of the key that it had before.
+    /// The robot's replies lack the signature that they had before.
     #[error(
         "while {doing}: answers came, but not signed with the key: the robot restarted meanwhile (then it is at rest), or something else answers in its place; look at the robot, then connect again"
     )]
     NotSigned {
-        /// What was being done.
+        /// Operation in progress.
         doing: &'static str,
     },
-    /// The answer is none to the question.
+    /// The kind of the reply does not match the request.
     #[error(
         "while {doing}: the robot's answer is none to this request ({reply}); match firmware and program"
     )]
     WrongReply {
-        /// What was being done.
+        /// Operation in progress.
         doing: &'static str,
-        /// What came.
+        /// Received reply.
         reply: String,
     },
-    /// A number that does not fit the wire.
+    /// A value exceeds the range of the wire format.
     #[error("while {doing}: {quantity} of {value} is outside {low} … {high}")]
     OutOfRange {
-        /// What was being done.
+        /// Operation in progress.
         doing: &'static str,
-        /// Which quantity, with its unit.
+        /// Quantity with its unit.
         quantity: &'static str,
-        /// Its value.
+        /// Value of the quantity.
         value: f64,
-        /// Lowest possible.
+        /// Smallest possible value.
         low: f64,
-        /// Highest possible.
+        /// Largest possible value.
         high: f64,
     },
     /// The robot stopped before the end of the play.
@@ -194,40 +194,40 @@ pub enum LinkError {
         if flags.contains(Flags::BATTERY_LOW) { " (battery low)" } else { "" }
     )]
     StoppedEarly {
-        /// Why.
+        /// Cause of the stop.
         cause: StopCause,
-        /// Its state now.
+        /// Present state of the robot.
         state: StateName,
-        /// Cycles done.
+        /// Finished cycles.
         cycle: u32,
-        /// Cycles asked for.
+        /// Requested cycles.
         cycles: u32,
-        /// What else holds.
+        /// Flags of the status.
         flags: Flags,
     },
-    /// A table of a sequence was not there when the play before it ended.
+    /// The next table of a sequence was late.
     #[error(
         "the robot came to rest after {played} of {legs} gaits of the playlist: the table of the next was not there when the last \
          cycle ended; the link is too slow for so short a step, so give it more cycles, or bring the robot nearer"
     )]
     OutOfStep {
-        /// Legs that were played.
+        /// Number of legs that were played.
         played: usize,
-        /// Legs of the sequence.
+        /// Number of legs of the sequence.
         legs: usize,
     },
-    /// The robot did it, but its storage did not take it.
+    /// The robot applied the request but could not store it.
     #[error(
         "while {doing}: done, but the robot could not store it, so it is gone when the power is cut: look at its status and try again"
     )]
     NotStored {
-        /// What was being done.
+        /// Operation in progress.
         doing: &'static str,
     },
-    /// The caller broke off.
+    /// The caller cancelled the operation.
     #[error("while {doing}: broken off by the operator")]
     Interrupted {
-        /// What was being done.
+        /// Operation in progress.
         doing: &'static str,
     },
 }
@@ -254,7 +254,7 @@ fn no_answer_advice(counters: &LinkCounters) -> &'static str {
     }
 }
 
-/// How far a play came.
+/// Progress of a play in words.
 pub fn cycles_in_words(cycle: u32, cycles: u32) -> String {
     match cycles {
         0 => format!("{cycle} cycles of a play without end"),
@@ -262,7 +262,7 @@ pub fn cycles_in_words(cycle: u32, cycles: u32) -> String {
     }
 }
 
-/// A cause of stopping as a clause.
+/// Cause of a stop as a clause.
 pub fn cause_in_words(cause: StopCause) -> &'static str {
     match cause {
         StopCause::Boot => {

@@ -7,74 +7,74 @@ use link_protocol::{Reply, StopCause, TableInfo, Telemetry};
 use super::error::LinkError;
 use super::upload::UploadProgress;
 
-/// Names a request until the event that ends it.
+/// Identifier of a request until the event that ends it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Ticket(pub(super) u64);
 
 impl Ticket {
-    /// The same as a number, for who keeps it outside of Rust.
+    /// The identifier as a number, for callers outside Rust.
     pub fn number(self) -> u64 {
         self.0
     }
 }
 
-/// Something that happened in a session.
+/// Event of a session.
 #[derive(Debug)]
 pub enum Event {
-    /// A session is open. `restarted`: the robot has booted since the session before.
+    /// A session is open.
     Connected {
         /// The ticket of [`super::Session::connect`].
         ticket: Ticket,
         /// The robot has restarted since the last session.
         restarted: bool,
     },
-    /// The robot answered a request.
+    /// The robot replied to a request.
     Answered {
         /// The ticket of [`super::Session::request`].
         ticket: Ticket,
-        /// Its answer; never a refusal.
+        /// The reply; never a refusal.
         reply: Reply,
     },
-    /// A stop was not answered yet, but the robot says that it has stopped by itself: the stop waits on the line behind other
-    /// bytes, and the lease was quicker.
+    /// The robot reports that it has stopped by itself, before a reply to the stop: the stop waits on the line behind other
+    /// bytes, and the lease ran out first.
     StoppedByItself {
         /// The ticket of [`super::Session::request`].
         ticket: Ticket,
-        /// Why it stopped.
+        /// Cause of the stop.
         cause: StopCause,
     },
-    /// An upload is the active table, or will be at the next cycle boundary.
+    /// An upload is the active table, or will be at the end of the cycle.
     Uploaded {
         /// The ticket of [`super::Session::upload`].
         ticket: Ticket,
-        /// What the robot holds now.
+        /// Table that the robot now holds.
         table: TableInfo,
     },
-    /// More of an upload has arrived.
+    /// Progress of an upload.
     Progress {
         /// The ticket of [`super::Session::upload`].
         ticket: Ticket,
-        /// How much.
+        /// Transferred and total bytes.
         progress: UploadProgress,
     },
-    /// Something asked did not happen.
+    /// A request, greeting or upload failed.
     Failed {
-        /// Its ticket.
+        /// Ticket of the failed operation.
         ticket: Ticket,
-        /// Why.
+        /// Reason of the failure.
         error: LinkError,
     },
-    /// The robot told about itself.
+    /// Telemetry arrived.
     Telemetry {
-        /// What it said.
+        /// The telemetry.
         telemetry: Telemetry,
-        /// When it arrived, on the host's clock.
+        /// Time of arrival, on the host's clock.
         at: Duration,
     },
 }
 
 impl Event {
-    /// Ticket that ends with this event; `None` for progress and telemetry, which end nothing.
+    /// Ticket that ends with this event. `None` for progress and telemetry.
     pub fn ended(&self) -> Option<Ticket> {
         match self {
             Self::Connected { ticket, .. }

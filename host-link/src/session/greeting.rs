@@ -1,4 +1,4 @@
-//! What a session makes of the answer to its greeting: a new session, or a reason why there is none.
+//! Reply to a greeting: opens a session, or fails with a reason.
 
 use std::time::Duration;
 
@@ -64,8 +64,8 @@ impl Session {
         }
     }
 
-    /// An answer of which this program knows the start alone. It is held to the number as well as to the nonce: less of it
-    /// was checked.
+    /// Handles a reply of which this program knows only the start. Number and nonce must both match, because less of it was
+    /// checked.
     pub(super) fn greeted_by_unknown(
         &mut self,
         sequence: u16,
@@ -85,7 +85,7 @@ impl Session {
         self.fail_greeting(versions_meet(start).err().unwrap_or(newer));
     }
 
-    /// There is no session, for this reason; an upload that the session greeted for ends with it.
+    /// Fails the greeting for this reason, and the upload that needed the session.
     fn fail_greeting(&mut self, error: LinkError) {
         let Link::Greeting(greeting) = std::mem::replace(&mut self.link, Link::Closed) else {
             return;
@@ -97,8 +97,7 @@ impl Session {
         self.fail_waiting();
     }
 
-    /// What is under way was sent in an earlier session and may have acted there, whatever was heard of it since: in this one
-    /// it must not act again. A stop may.
+    /// Fails the pending request of an earlier session. It may have acted there and must not act again in this one. A stop may.
     fn disown_pending(&mut self) {
         if let Some(pending) = self.pending.take_if(|pending| !pending.request.is_stop())
             && let Owner::Ticket(ticket) = pending.owner
@@ -131,7 +130,7 @@ fn versions_meet(reply: &HelloReplyStart) -> Result<(), LinkError> {
     Ok(())
 }
 
-/// `1.2.3 (0123abcd)`.
+/// Text of a firmware version, such as `1.2.3 (0123abcd)`.
 pub(crate) fn firmware_name(firmware: &FirmwareVersion) -> String {
     let FirmwareVersion {
         major,

@@ -1,4 +1,4 @@
-//! Greeting, request and upload under way.
+//! Pending greeting, request and upload.
 
 use std::time::Duration;
 
@@ -9,7 +9,7 @@ use super::upload::{UploadPhase, Window};
 
 #[derive(Debug)]
 pub(super) struct Greeting {
-    /// `None`: the session greets by itself for an upload.
+    /// `None` if the session greets by itself for an upload.
     pub(super) ticket: Option<Ticket>,
     pub(super) nonce: u32,
     pub(super) sequence: u16,
@@ -19,43 +19,43 @@ pub(super) struct Greeting {
 }
 
 #[derive(Debug)]
-#[allow(clippy::large_enum_variant)] // there is one of it
+#[allow(clippy::large_enum_variant)] // there is only one instance
 pub(super) enum Link {
     Closed,
     Greeting(Greeting),
     Open(HelloReply),
 }
 
-/// Who waits for a request under way.
+/// Owner of a pending request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Owner {
     Ticket(Ticket),
     Upload,
 }
 
-/// A request that was sent at least once.
+/// Request that was sent at least once.
 #[derive(Debug)]
 pub(super) struct Pending {
     pub(super) owner: Owner,
     pub(super) request: Request,
     pub(super) sequence: u16,
-    /// Times it was sent since the robot was last heard to work at it.
+    /// Attempts since the robot last reported that it is working.
     pub(super) tries: u32,
     pub(super) first_sent: Duration,
     pub(super) last_sent: Duration,
     pub(super) next_try: Duration,
-    /// It was answered, but not with the signature that the key asks for.
+    /// A reply came without the required signature.
     pub(super) unsigned: bool,
 }
 
-/// Play of a table that follows the one under way.
+/// Play of a table that follows the present one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Follower {
     /// Number of cycles; 0 plays until stopped.
     pub cycles: u32,
     /// Duration of a cycle, µs.
     pub period_us: u32,
-    /// [`link_protocol::settings_crc32`] of the settings that the table was checked for.
+    /// [`link_protocol::settings_crc32`] of the settings for which the table was checked.
     pub settings_crc32: u32,
 }
 
@@ -63,23 +63,23 @@ pub struct Follower {
 pub(super) struct Upload {
     pub(super) ticket: Ticket,
     pub(super) begin: Begin,
-    /// Follows the play under way; `None`: becomes the active table.
+    /// Play that the table follows; `None` if the table becomes active.
     pub(super) follows: Option<Follower>,
     pub(super) table: Vec<u8>,
     pub(super) started: Duration,
     pub(super) deadline: Duration,
     pub(super) phase: UploadPhase,
-    /// Begin or Commit has yet to be sent.
+    /// Begin or Commit must be sent.
     pub(super) due: bool,
-    /// Sequence number of its Begin.
+    /// Sequence number of the Begin request.
     pub(super) number: u16,
     pub(super) window: Window,
-    /// Times it had to begin anew.
+    /// Number of restarts.
     pub(super) renewed: u32,
 }
 
 impl Upload {
-    /// What asks for the check once all pieces are there.
+    /// Request that starts the check after all chunks.
     pub(super) fn last_request(&self) -> Request {
         let upload = self.number;
         match self.follows {
@@ -97,7 +97,7 @@ impl Upload {
     }
 }
 
-/// What a request does, to complete "while …".
+/// Description of a request, to complete "while …".
 pub(super) fn describe(request: &Request) -> &'static str {
     match request {
         Request::Status => "asking for the status",

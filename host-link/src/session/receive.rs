@@ -1,4 +1,4 @@
-//! What a session makes of the bytes that come: answers, telemetry, the time; greetings are in [`super::greeting`].
+//! Received bytes of a session: replies, telemetry, clock. [`super::greeting`] handles greetings.
 
 use std::time::Duration;
 
@@ -11,19 +11,19 @@ use super::error::LinkError;
 use super::upload::UploadPhase;
 use super::{Event, Link, Owner, Pending, Session, describe};
 
-/// Wait before a robot that is busy is asked again.
+/// Pause before a request to a busy robot is repeated.
 const BUSY_WAIT: Duration = Duration::from_millis(100);
-/// Times in a row that a robot may be busy: checking a table takes some seconds.
+/// Most consecutive busy replies: the check of a table takes some seconds.
 const BUSY_TRIES: u32 = 50;
-/// Longest time for which a robot may answer that it is still working at a request. A check of the largest table takes 5 s.
+/// Longest time for which a robot may report that it is working at a request. A check of the largest table takes 5 s.
 pub const LONGEST_WORK: Duration = Duration::from_secs(20);
-/// For so long a robot may say that it has heard nothing fresh yet.
+/// Longest time for which a robot may reply that no keep-alive is fresh.
 const FRESH_PATIENCE: Duration = Duration::from_secs(3);
-/// A stop that is unanswered for so long waits behind something: the lease may have been quicker.
+/// Time without a reply after which a stop must be waiting behind other bytes, and the lease may end first.
 const STOP_QUEUES: Duration = Duration::from_millis(500);
 
 impl Session {
-    /// Takes bytes that arrived at `now`, in any split, and then does what is due.
+    /// Processes bytes that arrived at `now`, in any split, then calls [`poll`](Self::poll).
     pub fn receive(&mut self, now: Duration, bytes: &[u8]) {
         self.counters.bytes_received += bytes.len() as u64;
         for &byte in bytes {
@@ -48,14 +48,14 @@ impl Session {
                     pending.sequence == header.sequence && pending.request.is_stop()
                 });
                 let counts = if stop {
-                    // Whatever the session, but nothing else: a reply held back must not end the repeats of a lost stop.
+                    // Accepted from any session, but nothing else is: a delayed reply must not end the repeats of a lost stop.
                     let forged = named && !ours;
                     if let Some(pending) = self.pending.as_mut().filter(|_| forged) {
                         pending.unsigned = true;
                     }
                     reply == Reply::Done && !forged
                 } else {
-                    // A request of a session that is no more is answered, too.
+                    // A request of a closed session gets a reply too.
                     ours || matches!(reply, Reply::Refused(Refusal::StaleSession))
                 };
                 if counts {
@@ -72,7 +72,7 @@ impl Session {
             Message::Hello(_) | Message::Request(_) | Message::Heartbeat(_) => {
                 self.counters.echoed += 1;
             }
-            // Without a session of our own any robot on the line is the one that is to stop.
+            // Without a session, any robot on the line is the one to stop.
             Message::Telemetry(telemetry) if !ours && matches!(self.link, Link::Closed) => {
                 self.counters.foreign += 1;
                 self.last_heard = now;
@@ -107,8 +107,8 @@ impl Session {
         }
     }
 
-    /// Whether a frame of the open session is from who has the key. A robot that has not shown yet that it has it may have none;
-    /// one that has signs all but the reasons for which it turns a frame away.
+    /// Returns true if a frame of the open session is authentic. A robot that has not yet proved that it has the key may have
+    /// none. One that has signs everything except the reasons for refused frames.
     fn authentic(&mut self, received: &Received) -> bool {
         let Some(seal) = &self.seal else {
             return true;
@@ -143,7 +143,7 @@ impl Session {
         }
     }
 
-    /// A stop that is unanswered for longer than a way takes, while the robot says that it stops or has stopped.
+    /// Handles telemetry of a stop in progress while the stop has been unanswered for longer than a round trip.
     fn stopped_by_itself(&mut self, telemetry: &Telemetry, now: Duration) {
         let at_rest = |request: &Request| match telemetry.state {
             StateName::EStopped => true,
@@ -161,7 +161,7 @@ impl Session {
             && let Owner::Ticket(ticket) = pending.owner
         {
             self.events.push_back(match telemetry.cause {
-                // The stop itself: only its answer was lost.
+                // Caused by the stop itself: only its reply was lost.
                 StopCause::Requested | StopCause::EStop => Event::Answered {
                     ticket,
                     reply: Reply::Done,
@@ -171,7 +171,7 @@ impl Session {
         }
     }
 
-    /// A whole frame that is no message this program knows: a newer firmware's. What it answers ends with that reason.
+    /// Handles a complete frame with a message of newer firmware. Its request fails with that reason.
     fn take_unknown(&mut self, header: Header, ours: bool, now: Duration) {
         match self.decoder.kind_and_body() {
             Some((Kind::HelloReply, body)) => {
@@ -187,7 +187,8 @@ impl Session {
         }
     }
 
-    /// Asked again, the robot would answer the same. A stop is asked again all the same: nothing says that it acted.
+    /// Ends a request whose reply is unknown; a repeat would give the same reply. A stop is repeated, because it may not have
+    /// acted.
     fn answered_by_unknown(&mut self, sequence: u16) {
         let meant =
             |pending: &mut Pending| pending.sequence == sequence && !pending.request.is_stop();
@@ -208,7 +209,7 @@ impl Session {
 
     fn answered(&mut self, sequence: u16, reply: Reply, now: Duration) {
         if let Some(pending) = self.pending.take_if(|pending| pending.sequence == sequence) {
-            // Neither a repeat's answer tells the round trip, nor one that the robot worked for.
+            // The round trip is known only for a single attempt without interim replies.
             let once = pending.tries == 1 && pending.last_sent == pending.first_sent;
             let since_first = now.saturating_sub(pending.first_sent);
             match pending.request {
@@ -231,7 +232,7 @@ impl Session {
                     }
                 }
                 (Reply::Working, _) => {
-                    // Heard, and at it: the tries start anew.
+                    // The robot is working at the request: the count of attempts restarts.
                     let next_try = now + self.trip.wait(2);
                     self.pending = Some(Pending {
                         tries: 0,
@@ -242,8 +243,8 @@ impl Session {
                 (Reply::Refused(Refusal::StaleSession), owner) => {
                     self.session_lost(owner, &pending.request, now);
                 }
-                // The first keep-alives of a session are still on their way: this did not act, and is asked again under a new
-                // number. It was heard, so this try does not count, but those that were lost do.
+                // The first keep-alives of the session are still in flight, so the request did not act and is repeated under a
+                // new number. This attempt does not count, but lost ones do.
                 (Reply::Refused(Refusal::NotFresh), _) if since_first < FRESH_PATIENCE => {
                     let sequence = self.next_sequence();
                     self.pending = Some(Pending {
@@ -270,7 +271,7 @@ impl Session {
         }
     }
 
-    /// The robot is still at an earlier request: this one did not act, and is asked again under a new number.
+    /// Repeats a request later under a new number, because the robot was busy and did not act.
     fn ask_later(&mut self, owner: Owner, request: Request, now: Duration) {
         self.busy += 1;
         self.hold_until = now + BUSY_WAIT;
@@ -284,7 +285,7 @@ impl Session {
         }
     }
 
-    /// The robot restarted or was taken over. An upload greets again; whatever else was asked did not happen in this session.
+    /// Handles a restart or takeover of the robot. An upload greets again; other requests fail.
     fn session_lost(&mut self, owner: Owner, request: &Request, now: Duration) {
         let doing = describe(request);
         if self.upload.is_some() {
@@ -301,7 +302,7 @@ impl Session {
         }
     }
 
-    /// An answer to Begin or Commit.
+    /// Handles a reply to Begin or Commit.
     fn upload_answered(&mut self, request: &Request, reply: Reply) {
         let Some(total) = self.upload.as_ref().map(|upload| upload.table.len()) else {
             return;
@@ -361,7 +362,7 @@ impl Session {
         self.report_progress();
     }
 
-    /// An answer to a chunk, or to nothing any more.
+    /// Handles a reply to a chunk, or to no pending request.
     fn piece_answered(&mut self, sequence: u16, reply: &Reply, now: Duration) {
         let Some(upload) = self
             .upload
@@ -375,7 +376,7 @@ impl Session {
         let known = upload.window.knows(sequence);
         let before = upload.window.wanted();
         let wanted = match reply {
-            // A late answer counts too: its number says that it is this upload's.
+            // A late reply counts too: its number belongs to this upload.
             Reply::Wanted {
                 upload: number,
                 offset,
@@ -393,7 +394,7 @@ impl Session {
                 self.renew_upload(LinkError::Refused { doing, refusal });
                 return;
             }
-            // Its turn comes again with the time-out.
+            // The time-out repeats it.
             Reply::Working | Reply::Refused(Refusal::Busy) if known => return,
             Reply::Refused(refusal) if known => {
                 let refusal = *refusal;

@@ -1,4 +1,4 @@
-//! How long an answer takes, smoothed, and from it how long to wait before asking again.
+//! Round-trip estimator, and the retransmission time-out derived from it.
 
 use std::time::Duration;
 
@@ -6,20 +6,20 @@ use std::time::Duration;
 pub(crate) const SHORTEST: Duration = Duration::from_millis(80);
 /// Longest wait before a retransmission.
 pub(crate) const LONGEST: Duration = Duration::from_secs(3);
-/// Wait before the first answer has been timed.
+/// Wait before the first measured reply.
 const FIRST: Duration = Duration::from_millis(200);
 
-/// The smoothed round trip of a link.
+/// Smoothed round trip of a link.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct RoundTrip {
     smoothed: Option<Duration>,
     shortest: Option<Duration>,
-    /// The least time from a first sending to an answer that could belong to a repeat.
+    /// Least time from a first attempt to a reply that could belong to a repeat.
     at_most: Option<Duration>,
 }
 
 impl RoundTrip {
-    /// Takes the round trip of a frame that was sent once only: a repeat's answer could belong to either sending.
+    /// Adds the round trip of a frame that was sent once; a reply to a repeated frame is ambiguous.
     pub(crate) fn sample(&mut self, round_trip: Duration) {
         self.shortest = Some(
             self.shortest
@@ -31,29 +31,29 @@ impl RoundTrip {
         });
     }
 
-    /// The smoothed round trip, once there is one.
+    /// Smoothed round trip, if there is one.
     pub(crate) fn smoothed(&self) -> Option<Duration> {
         self.smoothed
     }
 
-    /// The shortest one so far: how long the way is when nothing waits on it.
+    /// Shortest round trip so far: the delay of the link without queues.
     pub(crate) fn shortest(&self) -> Option<Duration> {
         self.shortest
     }
 
-    /// Takes the time from the first sending of a frame that was sent more than once: the round trip is no longer. On a slow
-    /// line nothing better is known at first, since all is repeated before its answer comes.
+    /// Adds an upper bound of the round trip, from the first attempt of a repeated frame. On a slow line nothing better is
+    /// known at first, because everything is repeated before its reply arrives.
     pub(crate) fn bound(&mut self, longest: Duration) {
         self.at_most = Some(self.at_most.map_or(longest, |least| least.min(longest)));
     }
 
-    /// The smoothed round trip, else the best that is known of it, else what a first wait takes for it.
+    /// Smoothed round trip; otherwise the best bound; otherwise the initial estimate.
     pub(crate) fn assumed(&self) -> Duration {
         self.smoothed.or(self.at_most).unwrap_or(FIRST / 2)
     }
 
-    /// The wait after sending number `tries` (from 1): twice the smoothed round trip, doubled for each repeat, since a
-    /// link that clumps may answer all of them at once.
+    /// Wait after attempt `tries` (from 1): twice the smoothed round trip, doubled for each repeat, because a link that buffers
+    /// in lumps may answer several at once.
     pub(crate) fn wait(&self, tries: u32) -> Duration {
         let first = self.smoothed.map_or(FIRST, |smoothed| smoothed * 2);
         let doubled = first
@@ -92,7 +92,7 @@ mod tests {
         trip.bound(MS * 400);
         trip.bound(MS * 500);
         assert_eq!(trip.assumed(), MS * 400);
-        // Waits need a sample.
+        // Waits require a sample.
         assert_eq!(trip.wait(1), FIRST);
         trip.sample(MS * 380);
         assert_eq!(trip.assumed(), MS * 380);

@@ -1,66 +1,66 @@
-//! An upload as a window over a table: which piece goes next, what an answer proves, when to go back.
+//! Sliding window of an upload: next chunk, acknowledgements, and retransmission.
 //!
-//! The robot takes pieces in order, so its one number, the next wanted offset, tells everything. A piece behind a lost one
-//! is answered with that number too, which is the signal to go back at once and not to wait for a time-out.
+//! The robot accepts chunks in order, so the next expected offset is a cumulative acknowledgement. A chunk after a lost one is
+//! answered with the same offset, and the window goes back at once without a time-out (go-back-N).
 
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// How far an upload is.
+/// Phase of an upload.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum UploadPhase {
-    /// Announcing it.
+    /// Announcement.
     Begin,
-    /// Sending its pieces.
+    /// Transfer of the chunks.
     Chunks,
-    /// Waiting for the robot's check.
+    /// Wait for the robot's check.
     Commit,
 }
 
-/// How much of an upload has arrived.
+/// Progress of an upload.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct UploadProgress {
-    /// How far it is.
+    /// Present phase.
     pub phase: UploadPhase,
-    /// Bytes the robot has.
+    /// Bytes that the robot has received.
     pub done: usize,
-    /// Bytes in all.
+    /// Total bytes.
     pub total: usize,
 }
 
 #[derive(Debug, Clone, Copy)]
 struct InFlight {
     sequence: u16,
-    /// Offset of the piece.
+    /// Offset of the chunk.
     start: usize,
-    /// Offset behind the piece.
+    /// Offset after the chunk.
     end: usize,
-    /// Bytes on the wire.
+    /// Length on the wire, bytes.
     cost: usize,
     sent: Duration,
-    /// Sent for the first time: its answer times the round trip.
+    /// Sent for the first time, so its reply measures the round trip.
     fresh: bool,
 }
 
-/// The window over one table.
+/// Sliding window over one table.
 #[derive(Debug)]
 pub(crate) struct Window {
     total: usize,
-    /// Bytes of a piece.
+    /// Bytes per chunk.
     piece: usize,
-    /// Everything before is on the robot.
+    /// Next expected offset of the robot.
     wanted: usize,
-    /// Where the next piece starts.
+    /// Offset of the next chunk.
     next: usize,
-    /// Furthest offset ever sent.
+    /// Largest offset sent so far.
     furthest: usize,
     in_flight: VecDeque<InFlight>,
-    /// Time-outs in a row.
+    /// Consecutive time-outs.
     pub(crate) timeouts: u32,
 }
 
 impl Window {
-    /// A table of `total` bytes of which the robot wants those from `wanted` on, in pieces of `piece` bytes.
+    /// Window over a table of `total` bytes, of which the robot expects `wanted` next, in chunks of `piece` bytes.
     pub(crate) fn new(total: usize, wanted: usize, piece: usize) -> Self {
         Self {
             total,
@@ -73,27 +73,27 @@ impl Window {
         }
     }
 
-    /// Bytes the robot has.
+    /// Number of bytes that the robot has received.
     pub(crate) fn wanted(&self) -> usize {
         self.wanted
     }
 
-    /// All has arrived.
+    /// Returns true if all bytes have arrived.
     pub(crate) fn complete(&self) -> bool {
         self.wanted >= self.total
     }
 
-    /// Bytes on their way.
+    /// Bytes in flight, on the wire.
     pub(crate) fn in_flight(&self) -> usize {
         self.in_flight.iter().map(|piece| piece.cost).sum()
     }
 
-    /// The next piece to send, if the table has one left.
+    /// Next chunk to send, if any remains.
     pub(crate) fn next_piece(&self) -> Option<std::ops::Range<usize>> {
         (self.next < self.total).then(|| self.next..self.total.min(self.next + self.piece))
     }
 
-    /// Notes that [`next_piece`](Self::next_piece) was sent. Returns whether it had been sent before.
+    /// Records that [`next_piece`](Self::next_piece) was sent. Returns true if it is a repeat.
     pub(crate) fn sent(&mut self, sequence: u16, cost: usize, now: Duration) -> bool {
         let end = self.total.min(self.next + self.piece);
         let fresh = self.next >= self.furthest;
@@ -110,15 +110,15 @@ impl Window {
         !fresh
     }
 
-    /// Whether a piece of this number is in flight.
+    /// Returns true if a chunk of this number is in flight.
     pub(crate) fn knows(&self, sequence: u16) -> bool {
         self.in_flight
             .iter()
             .any(|piece| piece.sequence == sequence)
     }
 
-    /// The robot answered piece `sequence` with its wanted offset. Where that lies before the piece, one before was lost. A
-    /// late answer to a piece already written off still proves what has arrived. Returns the round trip where it can be told.
+    /// Handles the reply to chunk `sequence` with the expected offset `wanted`. An offset before the chunk shows a loss. A late
+    /// reply still acknowledges bytes. Returns the round trip if it is unambiguous.
     pub(crate) fn answered(
         &mut self,
         sequence: u16,
@@ -133,7 +133,7 @@ impl Window {
             .in_flight
             .iter()
             .position(|piece| piece.sequence == sequence);
-        // Pieces sent before this one were answered before it or will not be: the link keeps order.
+        // Earlier chunks were answered before, or never will be: the link preserves the order.
         let answered = place.and_then(|place| self.in_flight.drain(..=place).next_back());
         self.in_flight.retain(|piece| piece.end > self.wanted);
         if answered.is_some_and(|piece| self.wanted < piece.start) {
@@ -145,13 +145,13 @@ impl Window {
             .map(|piece| now.saturating_sub(piece.sent))
     }
 
-    /// Starts again from the wanted offset. What is in flight is written off, so its late answers mean nothing.
+    /// Restarts at the expected offset. Chunks in flight are written off, so their late replies have no effect.
     pub(crate) fn go_back(&mut self) {
         self.in_flight.clear();
         self.next = self.wanted;
     }
 
-    /// When the oldest piece in flight was sent.
+    /// Time at which the oldest chunk in flight was sent.
     pub(crate) fn oldest(&self) -> Option<Duration> {
         self.in_flight.front().map(|piece| piece.sent)
     }
@@ -177,7 +177,7 @@ mod tests {
         let mut window = Window::new(300, 0, MAX_CHUNK);
         send_all(&mut window, 10);
         assert_eq!(window.in_flight(), 3 * 124);
-        // The first answer was lost; the second covers it.
+        // The first reply was lost; the second covers it.
         assert_eq!(window.answered(11, 208, NOW), Some(Duration::ZERO));
         assert_eq!(window.in_flight(), 124);
         assert_eq!(window.answered(10, 104, NOW), None);
@@ -191,15 +191,15 @@ mod tests {
         let mut window = Window::new(500, 0, MAX_CHUNK);
         send_all(&mut window, 0);
         window.answered(0, 104, NOW);
-        // Piece 1 is lost: 2, 3 and 4 come behind a gap.
+        // Chunk 1 is lost: 2, 3 and 4 follow a gap.
         window.answered(2, 104, NOW);
         assert_eq!(window.next_piece(), Some(104..208));
         let next = send_all(&mut window, 5);
         assert_eq!(next, 9);
-        // An answer to the pieces written off goes back no second time.
+        // A reply to a chunk that was written off does not go back again.
         assert_eq!(window.answered(3, 104, NOW), None);
         assert_eq!(window.next_piece(), None);
-        // A repeat's answer times nothing.
+        // The reply to a repeat does not measure the round trip.
         assert_eq!(window.answered(8, 500, NOW), None);
         assert!(window.complete());
     }

@@ -1,4 +1,4 @@
-//! How long an upload takes on a link without faults: what an operator is told before it begins.
+//! Expected duration of an upload on a link without faults, as shown to the operator in advance.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -6,12 +6,12 @@ use std::time::Duration;
 use super::drive::CHUNK_COST;
 use super::{Link, Session};
 
-/// What the robot takes to check a whole table while it stands still, its ticks and the waits between included.
+/// Time of the robot's check of a full table at rest, including its ticks and the waits between.
 const CHECK: Duration = Duration::from_millis(130);
 
 impl Session {
-    /// The time from asking for an upload of `bytes` of table to the robot's word that it has passed its check, where nothing
-    /// is lost and the robot stands still: announcement, pieces, commit. `None` without a session.
+    /// Expected time from the request for an upload of `bytes` until the check has passed, without losses, while the robot is
+    /// at rest: announcement, chunks, commit. Returns `None` without a session.
     pub fn expected_upload(&self, bytes: usize) -> Option<Duration> {
         let Link::Open(hello) = &self.link else {
             return None;
@@ -29,18 +29,18 @@ impl Session {
     }
 }
 
-/// Pieces of a table on their way.
+/// Chunks of a table on the line.
 #[derive(Debug, Clone, Copy)]
 struct Pieces {
     count: usize,
-    /// What one takes on the line.
+    /// Time of one chunk on the line.
     each: Duration,
-    /// How many the robot's buffer may hold.
+    /// Number of chunks that fit the robot's buffer.
     at_once: usize,
 }
 
 impl Pieces {
-    /// From the first byte of the first piece to the answer to the last one.
+    /// Time from the first byte of the first chunk to the reply to the last one.
     fn expected(self, trip: Duration) -> Duration {
         let mut unanswered = VecDeque::new();
         let mut line_free = Duration::ZERO;
@@ -71,7 +71,7 @@ mod tests {
             at_once: 8,
         };
         assert_eq!(pieces.expected(MS * 20), MS * 220);
-        // Eight, eight and four: two answers are waited for before the last ones go out.
+        // Eight, eight and four: the last ones wait for two replies.
         assert_eq!(pieces.expected(MS * 1000), MS * (3 * 1010 + 3 * 10));
         let one_by_one = Pieces {
             at_once: 0,

@@ -1,22 +1,22 @@
-//! What a serial receiver makes of bytes that were sent at another rate: it finds a falling edge and samples by its own
-//! clock. Done bit by bit, because the noise that a wrong rate makes is not random: zeros, that is frame ends, are common.
+//! Serial receiver at a wrong baud rate: it finds a falling edge and samples by its own clock. The simulation is bit by bit,
+//! because the resulting noise is not random: zeros, which are frame ends, are common.
 
-/// Bits of a byte on the line: start, eight of data, stop.
+/// Bits of a byte on the line: start, eight data, stop.
 const BITS: u64 = 10;
 
-/// A character as a serial receiver hears it.
+/// Character as decoded by a serial receiver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Character {
-    /// Its eight bits.
+    /// Its eight data bits.
     pub byte: u8,
-    /// No stop bit where one should be: a framing error.
+    /// The stop bit is missing: a framing error.
     pub framing: bool,
-    /// Nothing but zeros, the stop bit too: a break.
+    /// All bits are zero, including the stop bit: a break.
     pub silent: bool,
 }
 
-/// Bytes that a receiver at `read_baud` hears when `bytes` are sent at `sent_baud`. A byte without its stop bit is dropped,
-/// as a driver drops it.
+/// Bytes decoded by a receiver at `read_baud` from `bytes` sent at `sent_baud`. Bytes with a framing error are dropped, as a
+/// driver does.
 pub(crate) fn misread(bytes: &[u8], sent_baud: u32, read_baud: u32) -> Vec<u8> {
     heard(bytes, sent_baud, read_baud)
         .into_iter()
@@ -24,10 +24,10 @@ pub(crate) fn misread(bytes: &[u8], sent_baud: u32, read_baud: u32) -> Vec<u8> {
         .collect()
 }
 
-/// Characters that a receiver at `read_baud` hears when `bytes` are sent at `sent_baud`, the line idle before and after.
+/// Characters decoded by a receiver at `read_baud` from `bytes` sent at `sent_baud`, with an idle line before and after.
 pub fn heard(bytes: &[u8], sent_baud: u32, read_baud: u32) -> Vec<Character> {
     let (sent, read) = (u64::from(sent_baud.max(1)), u64::from(read_baud.max(1)));
-    // Time in units in which a sent bit takes 2 * `read` and a read bit 2 * `sent`, so that halves are whole.
+    // Time unit: a sent bit takes 2 * `read` and a read bit 2 * `sent`, so that halves are integers.
     let (sent_bit, read_bit) = (2 * read, 2 * sent);
     let end = bytes.len() as u64 * BITS * sent_bit;
     let level = |time: u64| {
@@ -54,7 +54,7 @@ pub fn heard(bytes: &[u8], sent_baud: u32, read_baud: u32) -> Vec<Character> {
         }
         let sample = |bit: u64| level(time + bit * read_bit + read_bit / 2);
         if sample(0) {
-            // Too short to be a start bit.
+            // Too short for a start bit.
             time = (time / sent_bit + 1) * sent_bit;
             continue;
         }
@@ -65,7 +65,7 @@ pub fn heard(bytes: &[u8], sent_baud: u32, read_baud: u32) -> Vec<Character> {
             framing,
             silent: framing && byte == 0,
         });
-        // The receiver looks for the next edge from the middle of the stop bit on; a line still low must rise first.
+        // The receiver searches the next edge from the middle of the stop bit; a low line must rise first.
         time += 9 * read_bit + read_bit / 2;
         while time < end && !level(time) {
             time = (time / sent_bit + 1) * sent_bit;
@@ -88,9 +88,9 @@ mod tests {
 
     #[test]
     fn half_the_rate_reads_known_noise() {
-        // 0x00 is low for nine bits: the receiver samples its data after 3, 5, 7 (low), 9 and more of them (high).
+        // 0x00 is low for nine bits; the receiver samples its data after 3, 5, 7 (low), 9 and more of them (high).
         assert_eq!(misread(&[0x00], 115_200, 57_600), [0xF8]);
-        // Twice the rate: each bit is read twice; low for 18 of the receiver's bits has no stop bit.
+        // Twice the rate: each bit is read twice, and a line that is low for 18 receiver bits has no stop bit.
         assert_eq!(misread(&[0x00], 115_200, 230_400), Vec::<u8>::new());
         assert_eq!(misread(&[0xFF], 115_200, 230_400), [0xFE]);
     }

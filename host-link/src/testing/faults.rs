@@ -1,21 +1,21 @@
-//! What may go wrong on a link, as numbers, and the text that names them on a command line.
+//! Fault parameters of a link, and their text form on a command line.
 
 use std::str::FromStr;
 use std::time::Duration;
 
-/// A time during which nothing passes, as when a Bluetooth module loses its peer.
+/// Interruption of the link, as when a Bluetooth module loses its peer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Outage {
-    /// When it begins, on the port's clock.
+    /// Start, on the port's clock.
     pub from: Duration,
-    /// How long it lasts.
+    /// Duration.
     pub lasting: Duration,
-    /// From one beginning to the next; `None`: it happens once.
+    /// Period of repeated interruptions; `None` for a single one.
     pub every: Option<Duration>,
 }
 
 impl Outage {
-    /// Nothing passes for `lasting` from `from` on, once.
+    /// Single interruption from `from` on, for `lasting`.
     pub fn once(from: Duration, lasting: Duration) -> Self {
         Self {
             from,
@@ -24,7 +24,7 @@ impl Outage {
         }
     }
 
-    /// Nothing passes at this time.
+    /// Returns true if the link is interrupted at this time.
     pub fn covers(&self, at: Duration) -> bool {
         let Some(since) = at.checked_sub(self.from) else {
             return false;
@@ -39,119 +39,120 @@ impl Outage {
     }
 }
 
-/// The faults of a link. Chances are per frame and hold in both directions.
+/// Fault parameters of a link. Probabilities are per frame and hold in both directions.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Faults {
-    /// Chance that a frame vanishes, 0 to 1.
+    /// Probability that a frame is lost, 0 to 1.
     pub drop: f64,
-    /// Chance that one bit of a frame is inverted, 0 to 1.
+    /// Probability that one bit of a frame is inverted, 0 to 1.
     pub flip: f64,
-    /// Chance that a frame arrives twice, 0 to 1.
+    /// Probability that a frame arrives twice, 0 to 1.
     pub duplicate: f64,
-    /// Chance that a frame is overtaken by those sent up to [`Faults::LONGEST_DETOUR`] after it, 0 to 1.
+    /// Probability that frames sent up to [`Faults::LONGEST_DETOUR`] later overtake a frame, 0 to 1.
     pub reorder: f64,
-    /// Added to the travel time of every frame, each way.
+    /// Additional delay of every frame, each way.
     pub delay: Duration,
-    /// Bytes towards the host are held until this many lie ready or the oldest has waited
-    /// [`Faults::LONGEST_HOLD`]; 0 for none. Towards the robot a module of this kind does not buffer.
+    /// Bytes towards the host are held until this many are ready or the oldest has waited [`Faults::LONGEST_HOLD`]; 0 disables
+    /// it. Such a module does not buffer towards the robot.
     pub clump: usize,
-    /// Bytes that the module kept from before and lets out again, ahead of everything new, when the traffic begins anew
-    /// after [`Faults::QUIET`] or a disconnection; 0 for none.
+    /// Number of old bytes that the module sends again, ahead of new ones, when traffic resumes after [`Faults::QUIET`] or a
+    /// disconnection; 0 disables it.
     pub stale: usize,
-    /// The far end speaks and listens at this rate instead of the robot's 115 200 baud.
+    /// Baud rate of the far end, if it differs from the robot's 115 200.
     pub baud: Option<u32>,
-    /// Bytes a second that pass towards the robot; the rest waits in a buffer. `None`: as many as come.
+    /// Bytes per second towards the robot; more are buffered. `None` means unlimited.
     pub rate: Option<u32>,
-    /// Bytes that wait there at most; a frame that finds no room is lost. 0: as many as come.
+    /// Capacity of that buffer, bytes; a frame that does not fit is lost. 0 means unlimited.
     pub buffer: usize,
-    /// Times without any connection.
+    /// Interruptions of the connection.
     pub disconnect: Option<Outage>,
 }
 
 impl Faults {
-    /// How long a clumping link holds bytes back at most.
+    /// Longest time for which a link that buffers in lumps holds bytes.
     pub const LONGEST_HOLD: Duration = Duration::from_secs(1);
-    /// How much later than its time a reordered frame arrives at most.
+    /// Largest additional delay of a reordered frame.
     pub const LONGEST_DETOUR: Duration = Duration::from_millis(100);
-    /// Silence after which what comes is taken for a new connection: an open session is never silent for so long.
+    /// Silence after which traffic counts as a new connection; an open session is never silent that long.
     pub const QUIET: Duration = Duration::from_millis(300);
-    /// The rate of the robot's line.
+    /// Baud rate of the robot's line.
     pub const BAUD: u32 = 115_200;
 
-    /// A link without faults.
+    /// Parameters of a link without faults.
     pub fn none() -> Self {
         Self::default()
     }
 }
 
-/// Why a list of faults was not understood, and where in it.
+/// Parse error of a fault list, with its position.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("reading the faults at column {column}: {problem}")]
 pub struct FaultsError {
-    /// Where the item stands, in characters from 1.
+    /// Column of the item, in characters from 1.
     pub column: usize,
-    /// What is wrong with it.
+    /// Problem of the item.
     pub problem: FaultsProblem,
 }
 
-/// What is wrong with an item of a list of faults.
+/// Problem of an item in a fault list.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum FaultsProblem {
-    /// An item that is not `name=value`.
+    /// The item is not `name=value`.
     #[error("`{0}` is not of the form name=value; write for example drop=5%,clump=230")]
     NotAPair(String),
-    /// A name that is none of ours.
+    /// The name is unknown.
     #[error(
         "there is no fault `{0}`; there are drop, flip, duplicate, reorder, delay, clump, stale, baud, rate, buffer and disconnect"
     )]
     UnknownName(String),
-    /// A chance that is no number from 0 to 1.
+    /// The probability is not a number from 0 to 1.
     #[error(
         "{name}={value} is not a chance; write a percentage from 0% to 100% or a number from 0 to 1"
     )]
     NotAChance {
-        /// Which fault.
+        /// Name of the fault.
         name: String,
-        /// What stood there.
+        /// Given value.
         value: String,
     },
-    /// A value that is no whole number, or too large.
+    /// The value is not a whole number, or too large.
     #[error("{name}={value} is not a whole number of {unit} up to {most}")]
     NotACount {
-        /// Which fault.
+        /// Name of the fault.
         name: String,
-        /// What stood there.
+        /// Given value.
         value: String,
-        /// What is counted.
+        /// Unit of the value.
         unit: &'static str,
-        /// The most that is taken.
+        /// Largest allowed value.
         most: u64,
     },
-    /// A rate at which nothing passes.
+    /// The rate passes nothing.
     #[error("rate={0} is no number of bytes a second above 0, as in rate=200,buffer=8192")]
     NotARate(String),
-    /// A rate that no serial port has.
+    /// The baud rate is not supported by serial ports.
     #[error("baud={0} is no rate of a serial line; write one from 300 to 4000000, as baud=38400")]
     NotABaudRate(String),
-    /// A disconnection that is not two or three times.
+    /// The disconnection is not two or three times.
     #[error(
         "disconnect={0} is not START:LENGTH or START:LENGTH:EVERY in milliseconds, EVERY longer than LENGTH, as in disconnect=2000:1500"
     )]
     NotAnOutage(String),
-    /// The same fault named twice.
+    /// The fault occurs twice.
     #[error("`{0}` stands there twice; leave one of them out")]
     Twice(String),
 }
 
-/// A day bounds what can be meant by a time, and keeps times addable.
+/// One day: the largest allowed time, which also prevents overflow.
 const MOST_MILLISECONDS: u64 = 86_400_000;
-/// A mebibyte bounds what a module can hold.
+/// One mebibyte: the largest allowed buffer.
 const MOST_BYTES: u64 = 1 << 20;
 
 impl FromStr for Faults {
     type Err = FaultsError;
 
-    /// Reads `drop=5%,flip=0.01,duplicate=2%,reorder=1%,delay=100,clump=230,stale=400,baud=38400,rate=200,buffer=8192,disconnect=2000:1500`;
+    /// Parses
+    /// `drop=5%,flip=0.01,duplicate=2%,reorder=1%,delay=100,clump=230,stale=400,baud=38400,rate=200,buffer=8192,disconnect=2000:1500`;
     /// times are in milliseconds.
     fn from_str(text: &str) -> Result<Self, FaultsError> {
         let mut faults = Self::none();

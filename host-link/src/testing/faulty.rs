@@ -1,4 +1,4 @@
-//! Any port made worse on purpose: the same faults, from the same seed, in both directions.
+//! Port wrapper with faults in both directions, reproducible from a seed.
 
 use std::io;
 use std::time::Duration;
@@ -10,17 +10,17 @@ use super::faults::{Faults, Outage};
 use super::injector::{FaultCounts, FaultInjector};
 use crate::Port;
 
-/// Which faults strike the bytes that are written and which those that are read.
+/// Faults of the written and of the read bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct FaultPlan {
-    /// Faults of what this end sends.
+    /// Faults of the written bytes.
     pub written: Faults,
-    /// Faults of what this end receives.
+    /// Faults of the read bytes.
     pub read: Faults,
 }
 
 impl FaultPlan {
-    /// For a port at the host's end: clumps strike what the host reads, a slow rate what it writes.
+    /// Plan for a port at the host's end: lumps affect reads, a slow rate affects writes.
     pub fn at_host(faults: Faults) -> Self {
         Self {
             written: Faults { clump: 0, ..faults },
@@ -31,7 +31,7 @@ impl FaultPlan {
         }
     }
 
-    /// For a port at the robot's end: clumps strike what the robot writes.
+    /// Plan for a port at the robot's end: lumps affect writes.
     pub fn at_robot(faults: Faults) -> Self {
         Self {
             written: Faults {
@@ -43,13 +43,13 @@ impl FaultPlan {
     }
 }
 
-/// A port with seeded faults around any other port, on that port's clock.
+/// Port with seeded faults around any other port, on that port's clock.
 #[derive(Debug)]
 pub struct FaultyPort<P> {
     port: P,
     written: FaultInjector,
     read: FaultInjector,
-    /// Came through but did not fit the reader's buffer.
+    /// Received bytes that did not fit the reader's buffer.
     ready: Vec<u8>,
 }
 
@@ -69,34 +69,34 @@ impl<P: Port> FaultyPort<P> {
         }
     }
 
-    /// The port inside.
+    /// Wrapped port.
     pub fn inner(&self) -> &P {
         &self.port
     }
 
-    /// The port inside.
+    /// Wrapped port.
     pub fn inner_mut(&mut self) -> &mut P {
         &mut self.port
     }
 
-    /// What was done to the frames written and to the frames read.
+    /// Fault counts of the written and of the read frames.
     pub fn counts(&self) -> (FaultCounts, FaultCounts) {
         (self.written.counts(), self.read.counts())
     }
 
-    /// Cuts the link both ways for a while.
+    /// Interrupts the link in both directions.
     pub fn disconnect(&mut self, outage: Outage) {
         self.written.disconnect(outage);
         self.read.disconnect(outage);
     }
 
-    /// Other faults from now on. What is under way already keeps its fate.
+    /// Replaces the faults. Frames under way keep their outcome.
     pub fn set_plan(&mut self, plan: FaultPlan) {
         self.written.set_faults(plan.written);
         self.read.set_faults(plan.read);
     }
 
-    /// Passes on what is due at `now`.
+    /// Passes on the frames that are due at `now`.
     fn settle(&mut self, now: Duration) -> io::Result<()> {
         let mut due = Vec::new();
         self.written.pop(now, &mut due);
@@ -121,7 +121,7 @@ impl<P: Port> Port for FaultyPort<P> {
                 self.ready.drain(..count);
                 return Ok(count);
             }
-            // Wait for the next thing that can happen; bytes already there are taken with no wait even at the deadline.
+            // Waits for the next possible event. Available bytes are read without a wait, even at the deadline.
             let wake = [self.written.next_release(), self.read.next_release()]
                 .into_iter()
                 .flatten()

@@ -1,4 +1,4 @@
-//! The faults of one direction as a pure queue: frames and times in, what is left of them and when out.
+//! Faults of one direction as a pure queue: frames and times in, modified frames and times out.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -10,50 +10,50 @@ use super::baud::misread;
 use super::faults::{Faults, Outage};
 use crate::port::FrameCutter;
 
-/// What an injector has done so far, in frames.
+/// Counts of an injector, in frames.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct FaultCounts {
-    /// Frames that went in.
+    /// Frames received.
     pub frames: u64,
-    /// Frames that vanished by chance.
+    /// Frames lost by chance.
     pub dropped: u64,
     /// Frames with one inverted bit.
     pub flipped: u64,
-    /// Frames that came out twice.
+    /// Frames sent twice.
     pub duplicated: u64,
-    /// Frames that others overtook, or may have.
+    /// Frames delayed so that others may overtake them.
     pub detoured: u64,
-    /// Bytes from before that came out again.
+    /// Old bytes sent again.
     pub stale_bytes: u64,
-    /// Frames that another baud rate made noise of.
+    /// Frames garbled by another baud rate.
     pub misread: u64,
     /// Frames lost to a disconnection.
     pub cut_off: u64,
-    /// Frames that found no room in the buffer before a slow line.
+    /// Frames that did not fit the buffer of a slow line.
     pub overflowed: u64,
 }
 
-/// Faults on one direction of a link.
+/// Faults of one direction of a link.
 #[derive(Debug)]
 pub struct FaultInjector {
     faults: Faults,
     rng: ChaCha8Rng,
     cutter: FrameCutter,
-    /// Frames under way and when they arrive, in order.
+    /// Frames under way with their arrival times, in order.
     under_way: VecDeque<(Duration, Vec<u8>)>,
-    /// Arrived bytes that the clumping link still holds.
+    /// Arrived bytes that are held for a lump.
     held: VecDeque<u8>,
     held_since: Duration,
-    /// The last bytes carried, for a module that lets them out again.
+    /// Last bytes carried, for a module that sends them again.
     carried: VecDeque<u8>,
     last_push: Option<Duration>,
-    /// When a slow line has carried all that waits for it.
+    /// Time at which a slow line has sent its bytes.
     line_free: Duration,
     counts: FaultCounts,
 }
 
 impl FaultInjector {
-    /// A direction with the given faults. `rng` is the direction's own stream, so that neither disturbs the other.
+    /// Returns a direction with these faults. `rng` is its own random stream, so that directions are independent.
     pub fn new(faults: Faults, rng: ChaCha8Rng) -> Self {
         Self {
             faults,
@@ -69,22 +69,22 @@ impl FaultInjector {
         }
     }
 
-    /// What has been done so far.
+    /// Counts so far.
     pub fn counts(&self) -> FaultCounts {
         self.counts
     }
 
-    /// Other faults from now on. What is under way already keeps its fate; what a clumping link held comes out.
+    /// Replaces the faults. Frames under way keep their outcome; held bytes are released.
     pub fn set_faults(&mut self, faults: Faults) {
         self.faults = faults;
     }
 
-    /// Cuts the link for a while from `outage.from` on; what is under way then is lost too.
+    /// Interrupts the link from `outage.from` on; frames under way then are lost too.
     pub fn disconnect(&mut self, outage: Outage) {
         self.faults.disconnect = Some(outage);
     }
 
-    /// Takes bytes that were sent at `now`.
+    /// Adds bytes that were sent at `now`.
     pub fn push(&mut self, now: Duration, bytes: &[u8]) {
         if bytes.is_empty() {
             return;
@@ -102,7 +102,7 @@ impl FaultInjector {
         } = self;
         cutter.push(bytes, |frame| {
             counts.frames += 1;
-            // Every frame draws the same numbers whatever becomes of it: a fault more does not shift all later ones.
+            // Every frame draws the same number of random values, so that one more fault does not change the later ones.
             let (drop, flip, twice): (f64, f64, f64) = (rng.random(), rng.random(), rng.random());
             let bit = rng.random_range(0..frame.len() * 8);
             let (reorder, detour): (f64, f64) = (rng.random(), rng.random());
@@ -141,7 +141,7 @@ impl FaultInjector {
         });
     }
 
-    /// The traffic begins anew: what the module kept comes out first.
+    /// Queues the old bytes of the module because traffic has resumed.
     fn let_out_stale(&mut self, now: Duration) {
         let anew = self.last_push.is_some_and(|last| {
             now.saturating_sub(last) >= Faults::QUIET || cut(&self.faults, last)
@@ -156,7 +156,7 @@ impl FaultInjector {
         insert(&mut self.under_way, now + self.faults.delay, kept);
     }
 
-    /// When [`pop`](Self::pop) will next have something, if nothing more goes in.
+    /// Time at which [`pop`](Self::pop) next returns bytes, unless more are added.
     pub fn next_release(&self) -> Option<Duration> {
         let arrival = self.under_way.front().map(|(at, _)| *at);
         if self.held.is_empty() {
@@ -170,7 +170,7 @@ impl FaultInjector {
         Some(arrival.map_or(patience, |at| at.min(patience)))
     }
 
-    /// Appends to `out` the bytes that have come through by `now`.
+    /// Appends the bytes that have passed by `now` to `out`.
     pub fn pop(&mut self, now: Duration, out: &mut Vec<u8>) {
         if self.faults.clump == 0 {
             out.extend(self.held.drain(..));
@@ -204,7 +204,7 @@ fn cut(faults: &Faults, at: Duration) -> bool {
     faults.disconnect.is_some_and(|outage| outage.covers(at))
 }
 
-/// When a slow line has carried a frame of so many bytes; `None` where they find no room before it.
+/// Time at which a slow line has sent a frame of this length. Returns `None` if it does not fit the buffer.
 fn through_line(
     faults: &Faults,
     line_free: &mut Duration,
@@ -223,7 +223,7 @@ fn through_line(
     Some(*line_free)
 }
 
-/// Keeps the order of arrival, and that of sending among equals.
+/// Inserts by arrival time; equal times keep the order of sending.
 fn insert(under_way: &mut VecDeque<(Duration, Vec<u8>)>, arrival: Duration, frame: Vec<u8>) {
     let place = under_way.partition_point(|(at, _)| *at <= arrival);
     under_way.insert(place, (arrival, frame));
@@ -311,7 +311,7 @@ mod tests {
             injector.pop(MS * at, &mut out);
             assert_eq!(out.len(), arrived, "after {at} ms");
         }
-        // Empty again.
+        // The buffer is empty again.
         injector.push(MS * 1000, &frames(4));
         assert_eq!(injector.counts().overflowed, 2);
         assert_eq!(injector.next_release(), Some(MS * 1050));
@@ -341,7 +341,7 @@ mod tests {
             injector.push(MS * at, &frames(1));
         }
         injector.pop(MS * 1000, &mut out);
-        // Sent at 80 and 150; what was under way at 100 is lost.
+        // Sent at 80 and 150; frames under way at 100 are lost.
         assert_eq!(out.len(), 10);
         assert_eq!(injector.counts().cut_off, 3);
     }
@@ -376,12 +376,12 @@ mod tests {
         assert_eq!(at(0, 1), [1, 1, 0]);
         assert_eq!(at(100, 2), [2, 2, 0]);
         assert_eq!(at(200, 3), [3, 3, 0]);
-        // Silence.
+        // After a silence.
         assert_eq!(at(500, 4), [2, 2, 0, 3, 3, 0, 4, 4, 0]);
         assert_eq!(at(799, 5), [5, 5, 0]);
         assert_eq!(at(950, 6), [6, 6, 0]);
         assert!(at(1050, 7).is_empty());
-        // The outage, though never silent.
+        // After the interruption, although it was never silent.
         assert_eq!(at(1100, 8), [5, 5, 0, 6, 6, 0, 8, 8, 0]);
         assert_eq!(injector.counts().stale_bytes, 12);
     }

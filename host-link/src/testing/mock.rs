@@ -1,4 +1,4 @@
-//! Two ports in memory that are each other's other end, on one clock that only waiting moves.
+//! Pair of connected ports in memory, on one clock that advances only during waits.
 
 use std::collections::VecDeque;
 use std::io;
@@ -10,12 +10,12 @@ use crate::Port;
 #[derive(Debug, Default)]
 struct Shared {
     now: Duration,
-    /// Bytes that lie ready for end 0 and end 1.
+    /// Readable bytes of end 0 and end 1.
     inbox: [VecDeque<u8>; 2],
     closed: bool,
 }
 
-/// One end of an in-memory link. Bytes arrive at once; a read that finds none moves the clock by its whole timeout.
+/// One end of an in-memory link. Bytes arrive at once; a read without bytes advances the clock by its whole time-out.
 #[derive(Debug)]
 pub struct MockPort {
     shared: Arc<Mutex<Shared>>,
@@ -23,7 +23,7 @@ pub struct MockPort {
 }
 
 impl MockPort {
-    /// Two ends of one link, at time zero.
+    /// Returns both ends of a link, at time zero.
     pub fn pair() -> (Self, Self) {
         let shared = Arc::new(Mutex::new(Shared::default()));
         let end = |end| Self {
@@ -33,7 +33,7 @@ impl MockPort {
         (end(0), end(1))
     }
 
-    /// Moves the clock of both ends on.
+    /// Advances the clock of both ends.
     pub fn pass(&self, time: Duration) {
         self.shared().now += time;
     }

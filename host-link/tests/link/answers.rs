@@ -1,5 +1,5 @@
-//! Which frame is the answer to what: answers of a firmware that says what this program does not know, answers that a
-//! Bluetooth module held back from another session, and requests that an earlier session may have carried out.
+//! Matching of replies to requests: replies of newer firmware, replies of another session that a Bluetooth module held back,
+//! and requests that an earlier session may have executed.
 
 use crate::scripted;
 
@@ -31,7 +31,7 @@ fn newer_refusal() -> Vec<u8> {
     refusal
 }
 
-/// A greeting's answer from a board that was appended after this program was built.
+/// A greeting's reply with a board that was appended after this program was built.
 fn newer_board(reply: HelloReply) -> Vec<u8> {
     let of = |board| body(&Message::HelloReply(HelloReply { board, ..reply }));
     let (mut answer, other) = (of(Board::Twin), of(Board::Pico));
@@ -67,7 +67,7 @@ fn an_answer_that_this_program_does_not_know_fails_its_request_at_once() {
             error.contains("asking for the status") && error.contains("update this program"),
             "{error}"
         );
-        // The session is none the worse.
+        // The session continues.
         assert!(matches!(script.last_request().2, Request::Table));
         script.reply(Reply::Done);
         assert_eq!(script.outcome(next), Some(Ok(())));
@@ -125,7 +125,7 @@ fn a_greeting_answered_by_an_unknown_board_names_the_firmware() {
     let connecting = script.session.connect(script.now);
     script.collect();
     let (sequence, reply) = script.greeting();
-    // Neither the answer to another host's greeting that was held back, nor one under another number.
+    // Neither a delayed reply to another host's greeting, nor one under another number.
     let mut held = reply;
     held.host_nonce ^= 1;
     let header = |sequence| Header::new(SESSION, sequence);
@@ -140,7 +140,7 @@ fn a_greeting_answered_by_an_unknown_board_names_the_firmware() {
         "{newer}"
     );
     assert!(script.session.hello().is_none());
-    // Where the versions do not meet either, that is the reason.
+    // If the versions are incompatible too, that is the reported reason.
     let connecting = script.session.connect(script.now);
     script.collect();
     let (sequence, mut reply) = script.greeting();
@@ -238,8 +238,8 @@ fn only_done_is_the_answer_to_a_stop() {
     }
 }
 
-/// An upload with a chunk under way and a play that the robot works at, when another host's greeting makes both stale and
-/// the session greets anew.
+/// Returns an upload with a chunk in flight and a play in progress at the robot; another host's greeting makes both stale, and
+/// the session greets again.
 fn taken_over_at_work() -> (Script, Ticket, Ticket) {
     let mut script = Script::open(MS * 10);
     let upload = script.session.upload(script.now, 0, &TABLE, MS * 60_000);
@@ -273,7 +273,7 @@ fn what_the_robot_worked_at_is_not_asked_again_in_another_session() {
     script.run_to(MS * 2_000);
     let again = |(.., request): &(_, _, Request)| matches!(request, Request::Play(_));
     assert!(!script.requests().iter().any(again));
-    // The upload goes on.
+    // The upload continues.
     assert!(matches!(script.last_request().2, Request::Begin(_)));
     assert_eq!(script.outcome(upload), None);
 }
@@ -281,7 +281,7 @@ fn what_the_robot_worked_at_is_not_asked_again_in_another_session() {
 #[test]
 fn a_session_that_greets_sleeps_until_the_greeting_is_due() {
     let (mut script, ..) = taken_over_at_work();
-    // Past the time at which the play would be asked again: run_to asserts that no deadline stands still.
+    // Past the next attempt of the play: run_to asserts that deadlines advance.
     script.run_to(MS * 3_000);
     let next = script.session.next_deadline().unwrap();
     assert!(next > script.now, "{next:?}");

@@ -1,4 +1,4 @@
-//! The session and the shell against the real brain over lines with faults, in virtual time.
+//! Session and blocking robot against the real brain over faulty lines, in virtual time.
 
 use crate::tank_less;
 
@@ -112,11 +112,11 @@ fn stops_act_through_a_fifth_of_all_frames_lost() {
         "stop through 20 % loss: pulses off after {} ms at most",
         worst.as_millis()
     );
-    // Ramp of at most 0.8 s, half a second at neutral, and what repeats take: 0.2 s each.
+    // Ramp of at most 0.8 s, half a second at neutral, and repeats of 0.2 s each.
     assert!(worst < MS * 2400, "{worst:?}");
 }
 
-/// Puts faults on a line that was clean, with the session as it is.
+/// Adds faults to a line and keeps the session.
 fn spoil(robot: Robot<Line>, faults: &str, seed: u64) -> Robot<FaultyPort<Line>> {
     use host_link::testing::FaultPlan;
     robot.map_port(|port| FaultyPort::new(port, FaultPlan::at_host(faults.parse().unwrap()), seed))
@@ -129,7 +129,7 @@ fn a_second_program_takes_over_and_the_first_is_told() {
     let mut port = first.into_port();
     let mut second = Robot::connect(&mut port, 77).unwrap();
     second.status().unwrap();
-    // The first session's frames come late, after the second has greeted.
+    // Frames of the first session arrive late, after the second greeting.
     drop(second);
     let mut third = Robot::connect(&mut port, 78).unwrap();
     assert_eq!(third.status().unwrap().state, StateName::Stopped);
@@ -156,7 +156,7 @@ fn a_stop_works_without_a_greeting() {
     );
 }
 
-/// The robot hears nothing any more and is still heard: what it tells of its stop is the answer, at once and in its words.
+/// The uplink is dead, the downlink works: telemetry of the stop ends the wait at once, with its cause.
 #[test]
 fn a_lost_link_that_telemetry_tells_ends_the_wait_at_once() {
     for (cycles, words) in [(3, "0 of 3 cycles"), (0, "0 cycles of a play without end")] {
@@ -200,7 +200,7 @@ fn a_lost_link_that_telemetry_tells_ends_the_wait_at_once() {
     }
 }
 
-/// Plays three cycles of eight seconds; the link is cut for a while from 3 s after the start on.
+/// Plays three cycles of eight seconds; the link is interrupted from 3 s after the start on.
 fn play_through_an_outage(
     detached: bool,
     lasting: Duration,
@@ -225,11 +225,11 @@ fn a_detached_play_is_found_again_and_seen_to_its_end() {
         let (end, took) = play_through_an_outage(true, lasting);
         let end = end.unwrap();
         assert_eq!((end.cause, end.cycle), (StopCause::Finished, 3));
-        // The end of the play, or of the outage and of one wait between two greetings.
+        // End of the play, or of the interruption and one wait between two greetings.
         let latest = (MS * 26_500).max(lasting + MS * 8000);
         assert!(took > MS * 24_000 && took < latest, "{took:?}");
     }
-    // Its end is known: a robot that is not there half a minute later is given up.
+    // The end of the play is known: a robot that is absent half a minute later is given up.
     let (end, took) = play_through_an_outage(true, MS * 600_000);
     let error = end.unwrap_err();
     assert!(matches!(error, LinkError::NoAnswer { .. }), "{error}");
@@ -247,7 +247,7 @@ fn a_play_that_lost_its_link_is_told_to_have_stopped() {
     assert!(took < MS * 12_000, "{took:?}");
 }
 
-/// A caller that waits for the robot to stop must not take word from before it was armed for the present.
+/// A wait for the end of a motion must ignore telemetry from before it was armed.
 #[test]
 fn telemetry_from_before_an_order_is_forgotten() {
     let mut robot = connect("delay=100,clump=230", 9);
@@ -267,7 +267,7 @@ fn telemetry_from_before_an_order_is_forgotten() {
     assert_eq!(seen, [StateName::Holding]);
 }
 
-/// Whatever is asked in whatever order over whatever line: each ticket ends in exactly one event.
+/// For any requests, order and line, each ticket ends in exactly one event.
 #[test]
 fn every_ticket_ends_exactly_once() {
     use host_link::session::{Event, Session, SessionConfig};
@@ -291,7 +291,7 @@ fn every_ticket_ends_exactly_once() {
         let mut ends = std::collections::BTreeMap::new();
         let mut next_ask = Duration::ZERO;
         let mut buf = [0; 256];
-        // Until all have ended and ten seconds more; a queue of requests on the worst line takes minutes.
+        // Until all have ended, plus ten seconds; a queue of requests on the worst line takes minutes.
         let mut last_open = Duration::ZERO;
         while line.now() < (last_open + MS * 10_000).max(MS * 22_000) && line.now() < MS * 300_000 {
             let now = line.now();

@@ -1,10 +1,9 @@
-//! What a host in haste leaves in a buffer before it dies. The tests of the emulated board include this file too.
+//! Buffer content of a host that dies while it sends as fast as it can. The tests of the emulated board include this file.
 
 use host_link::{Port, Robot};
 use link_protocol::{Header, Heartbeat, MAX_ENCODED, Message, Request, encode};
 
-/// Writes keep-alives of this session, each later than the one before, and requests that would set the robot in motion again,
-/// as many as `buffer` holds.
+/// Writes keep-alives of this session, each with a later time, and requests that would start a motion, up to `buffer` bytes.
 pub(crate) fn fill<P: Port>(robot: &mut Robot<P>, buffer: usize) {
     let session = robot.info().session;
     let now_us = u64::try_from(robot.port().now().as_micros()).unwrap();
@@ -12,7 +11,7 @@ pub(crate) fn fill<P: Port>(robot: &mut Robot<P>, buffer: usize) {
     for number in 0_u16.. {
         let heartbeat = Message::Heartbeat(Heartbeat {
             host_us: now_us,
-            // A millisecond of the robot's time lies in 20 of them.
+            // Each echoes a time one microsecond later than the one before.
             heard_us: now_us - 10_000 + u64::from(number),
         });
         let arm = Message::Request(Request::Arm);

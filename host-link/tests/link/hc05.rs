@@ -1,4 +1,4 @@
-//! The HC-05's set-up against a scripted module that answers as modules of several makers do, or as a wrong bench does.
+//! Setup of the HC-05 against a scripted module, with the variants of several makers and with faults at the bench.
 
 use crate::fake_module;
 
@@ -25,7 +25,7 @@ fn modules_of_all_makers_are_set_up_and_read_back() {
         );
         assert_eq!(outcome.before.uart, Some(Uart::at(9600)));
         assert_eq!(outcome.after.uart, Some(Uart::at(115_200)));
-        // In the module itself: no quotes in the PIN, whatever the maker's style.
+        // In the module itself: no quotes in the PIN, for any maker's style.
         assert_eq!(module.pin, "4711", "{maker:?}");
         assert_eq!(module.name, "swimmer");
         assert_eq!((module.uart.as_str(), module.role), ("115200,0,0", 0));
@@ -54,13 +54,13 @@ fn a_check_changes_nothing() {
     );
     assert_eq!(outcome.before.version.as_deref(), Some("2.0-20100601"));
     assert!(module.sets == 0 && !module.was_reset);
-    // What nobody asked for differs from nothing.
+    // A setting that was not requested does not count as different.
     let only_speed = Wanted::new(9600, None, None).unwrap();
     let outcome = converse(&mut module, &only_speed, true).unwrap();
     assert_eq!(outcome.differed, [Setting::Role]);
 }
 
-/// Some makers' modules answer the first line with an error, and echo what they hear.
+/// Some modules answer the first line with an error, and echo their input.
 #[test]
 fn a_cold_start_and_an_echo_do_no_harm() {
     for trouble in [Trouble::ColdStart, Trouble::EchoAndAnswer] {
@@ -114,7 +114,7 @@ fn each_trouble_has_its_own_sentence_and_advice() {
     }
 }
 
-/// A failure in the middle leaves the speed as the computer knows it, and never takes for ever.
+/// An early failure leaves the known speed, and the dialogue always ends.
 #[test]
 fn every_trouble_ends_and_the_speed_is_set_last() {
     for trouble in [

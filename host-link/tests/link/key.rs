@@ -1,5 +1,5 @@
-//! A robot with a shared key and hosts with the right one, a wrong one and none, over lines with faults; and an adversary
-//! who recorded everything.
+//! Robot with a shared key, and hosts with the correct key, a wrong one and no key, over faulty lines; and an adversary with a
+//! complete recording.
 
 use crate::tank_less;
 
@@ -22,7 +22,7 @@ use tank_less::{Line, circle, connect, faulty, upload};
 const MS: Duration = Duration::from_millis(1);
 const KEY: Key = Key(*b"sixteen letters!");
 
-/// A line to a robot that has the key.
+/// Returns a line to a robot that has the key.
 fn keyed_line(seed: u64) -> Line {
     let mut robot = Robot::connect(faulty(Faults::none(), seed), seed).unwrap();
     robot.set_key(Some(KEY)).unwrap();
@@ -162,7 +162,7 @@ fn a_host_with_a_key_drives_a_robot_without() {
     robot.arm(false).unwrap();
 }
 
-/// A line on which somebody else speaks too.
+/// Line with a second sender.
 struct Overheard {
     line: Line,
     forged: Vec<u8>,
@@ -188,7 +188,7 @@ impl Port for Overheard {
     }
 }
 
-/// Telemetry of an e-stop that was none, as the robot would say it without a key, and signed with another.
+/// Telemetry of a fictitious e-stop, unsigned and signed with another key.
 fn lies(told: &Telemetry, session: u16) -> [Vec<u8>; 2] {
     let lie = Message::Telemetry(Telemetry {
         robot_us: told.robot_us + 1,

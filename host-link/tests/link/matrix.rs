@@ -1,5 +1,5 @@
-//! How long an upload takes, over loss, latency and clumping, in virtual time: a snapshot under version control, so that a
-//! slowdown is a diff. And how near it comes to what the line carries.
+//! Durations of uploads over loss, latency and lumps, in virtual time, as a snapshot under version control; and their ratio to
+//! the capacity of the line.
 
 use crate::tank_less;
 
@@ -16,7 +16,7 @@ const MS: Duration = Duration::from_millis(1);
 const PATIENCE: Duration = Duration::from_mins(3);
 const SEEDS: u64 = 9;
 
-/// Time from asking for an upload of 2 kB to the robot's word that the table has passed; `None` where it failed.
+/// Time from the request for an upload of 2 kB until the table is checked. Returns `None` if it failed.
 fn upload_time(faults: Faults, seed: u64) -> Option<Duration> {
     let mut robot = Robot::connect(faulty(Faults::none(), seed), seed).unwrap();
     robot.port_mut().set_plan(FaultPlan::at_host(faults));
@@ -55,7 +55,7 @@ fn the_matrix_of_upload_times() {
                     ..Faults::none()
                 };
                 let mut times: Vec<_> = (0..SEEDS).map(|seed| upload_time(faults, seed)).collect();
-                // One that failed is longer than any that did not.
+                // Failed uploads sort last.
                 times.sort_by_key(|time| time.unwrap_or(Duration::MAX));
                 let seconds = |time: Option<Duration>| {
                     time.map_or("failed".to_owned(), |time| {
@@ -84,7 +84,7 @@ fn what_an_upload_takes_is_foretold() {
             ..Faults::none()
         };
         let mut robot = Robot::connect(faulty(slow, 1), 1).unwrap();
-        // Whoever uploads has asked something before: without an answer a slow line's round trip is not known.
+        // A first request measures the round trip of a slow line.
         robot.status().unwrap();
         let foretold = robot.expected_upload(2048).as_secs_f64();
         let took = timed(&mut robot).unwrap().as_secs_f64();
@@ -93,13 +93,13 @@ fn what_an_upload_takes_is_foretold() {
     }
 }
 
-/// What a line passes when bytes are poured in at its end for a while, bytes a second.
+/// Capacity of a line that is kept full, bytes per second.
 fn poured(speed: WireSpeed) -> f64 {
     let mut wire = host_link::port::Wire::new(speed);
     let mut out = Vec::new();
     wire.push(Duration::ZERO, &vec![0x55; 60_000]);
     let second = Duration::from_secs(1);
-    // One second of it, once the first byte has come through.
+    // One second of it, after the first byte has arrived.
     let first = wire.next_arrival().unwrap();
     wire.pop(first, &mut out);
     out.clear();
@@ -107,7 +107,7 @@ fn poured(speed: WireSpeed) -> f64 {
     out.len() as f64
 }
 
-/// Bytes of tables a second, from the first piece of a 2 kB table on the robot to the last.
+/// Table bytes per second, from the first chunk of a 2 kB table to the last.
 fn goodput(speed: WireSpeed, faults: &str) -> f64 {
     let line = VirtualPort::new(tank_less::Robot::new(5), speed);
     let line = FaultyPort::new(line, FaultPlan::at_host(faults.parse().unwrap()), 1);
@@ -117,13 +117,13 @@ fn goodput(speed: WireSpeed, faults: &str) -> f64 {
         .upload(table.bytes(), PATIENCE, |_| ControlFlow::Continue(()))
         .unwrap();
     let pieces = robot.port().inner().device().pieces;
-    // The first piece came before the time that counts.
+    // The first chunk arrived before the measured time.
     (table.bytes().len() - 104) as f64 / pieces.1.abs_diff(pieces.0).as_secs_f64()
 }
 
 #[test]
 fn uploads_fill_four_fifths_of_the_line() {
-    // A piece of 104 bytes is a frame of 124.
+    // A chunk of 104 bytes is a frame of 124.
     let share = 104.0 / 124.0;
     for (name, speed, faults) in [
         ("clean wire", WireSpeed::robot(), ""),

@@ -1,4 +1,4 @@
-//! The pseudo-terminal as programs meet it: opened by path, closed, opened again.
+//! Pseudo-terminal as used by other programs: opened by path, closed, opened again.
 
 use std::fs::{self, OpenOptions};
 use std::io::{Read, Write};
@@ -30,7 +30,7 @@ fn plain_programs_open_close_and_reopen_the_link() {
     robot.write(b"for nobody").unwrap();
     assert_eq!(robot.read(&mut buf, Duration::from_millis(10)).unwrap(), 0);
     assert!(!robot.client_present());
-    // Every byte that a line discipline might touch: end of line, interrupt, end of file, flow control, erase.
+    // All bytes that a line discipline could change: end of line, interrupt, end of file, flow control, erase.
     let every: Vec<u8> = (0..=255).collect();
     for _ in 0..3 {
         let mut client = OpenOptions::new()
@@ -44,7 +44,7 @@ fn plain_programs_open_close_and_reopen_the_link() {
         robot.write(&every).unwrap();
         let mut got = vec![0; 256];
         client.read_exact(&mut got).unwrap();
-        // Only what the robot wrote: nothing of the client's came back as an echo.
+        // Only the robot's bytes: no echo of the client.
         assert_eq!(got, every);
         drop(client);
         assert_eq!(robot.read(&mut buf, Duration::from_millis(10)).unwrap(), 0);
@@ -114,8 +114,7 @@ fn stale_links_are_replaced_and_other_files_are_not() {
     ));
 }
 
-/// A client that locks the terminal and is killed leaves its lock behind. Only a user who is not root notices: for root
-/// locks do not count.
+/// A client that locks the terminal and is killed leaves its lock. Only an unprivileged user is affected: root ignores locks.
 #[test]
 fn a_lock_left_behind_does_not_lock_out_the_next_client() {
     let folder = tempfile::tempdir().unwrap();
@@ -141,7 +140,7 @@ fn a_lock_left_behind_does_not_lock_out_the_next_client() {
     assert!(fs::symlink_metadata(&link).is_err());
 }
 
-/// A twin that was killed leaves its link, and the system may give the terminal's number to another program.
+/// A killed twin leaves its link, and the system may assign the terminal's number to another program.
 #[test]
 fn a_link_older_than_its_terminal_is_stale() {
     use rustix::fs::{AtFlags, CWD, Timespec, Timestamps, utimensat};

@@ -1,5 +1,5 @@
-//! A robot that follows a script: it decodes what a session sends, and the test answers by hand.
-#![allow(dead_code)] // each test uses its part
+//! Scripted robot: it decodes what a session sends, and the test writes the replies.
+#![allow(dead_code)] // each test uses a part of it
 
 use std::time::Duration;
 
@@ -13,7 +13,7 @@ use link_protocol::{
 pub(crate) const MS: Duration = Duration::from_millis(1);
 pub(crate) const SESSION: u16 = 7;
 
-/// What a session sent: when, under which header, what.
+/// Time, header and message of a sent frame.
 pub(crate) type Sent = (Duration, Header, Message);
 
 pub(crate) struct Script {
@@ -37,7 +37,7 @@ impl Script {
         }
     }
 
-    /// A session that is open after a round trip of `trip`.
+    /// Opens a session with a round trip of `trip`.
     pub(crate) fn open(trip: Duration) -> Self {
         let mut script = Self::new();
         script.session.connect(script.now);
@@ -49,7 +49,7 @@ impl Script {
         script
     }
 
-    /// Takes what the session has to send and to tell.
+    /// Collects the frames and events of the session.
     pub(crate) fn collect(&mut self) {
         for byte in self.session.take_outgoing() {
             if let Some(received) = self.decoder.push(byte) {
@@ -62,7 +62,7 @@ impl Script {
         }
     }
 
-    /// Lets the session live until `end`, deadline by deadline.
+    /// Runs the session until `end`, deadline by deadline.
     pub(crate) fn run_to(&mut self, end: Duration) {
         loop {
             self.session.poll(self.now);
@@ -79,7 +79,7 @@ impl Script {
         }
     }
 
-    /// The robot says something.
+    /// Sends a message of the robot.
     pub(crate) fn say(&mut self, session: u16, sequence: u16, message: &Message) {
         self.say_body(
             Header::new(session, sequence),
@@ -88,7 +88,7 @@ impl Script {
         );
     }
 
-    /// The robot says a body that need not be one.
+    /// Sends a body of the robot, valid or not.
     pub(crate) fn say_body(&mut self, header: Header, kind: Kind, body: &[u8]) {
         let mut frame = [0; MAX_ENCODED];
         let len = encode_body(header, kind as u8, body, None, &mut frame).unwrap();
@@ -96,7 +96,7 @@ impl Script {
         self.collect();
     }
 
-    /// The robot says what it is doing.
+    /// Sends telemetry with this state.
     pub(crate) fn tell(&mut self, state: StateName, cause: StopCause) {
         self.robot_us += 40_000;
         let telemetry = Telemetry {
@@ -117,20 +117,20 @@ impl Script {
         self.say(SESSION, 0, &Message::Telemetry(telemetry));
     }
 
-    /// Answers the request sent last.
+    /// Replies to the last request.
     pub(crate) fn reply(&mut self, reply: Reply) {
         let sequence = self.last_request().1;
         self.say(SESSION, sequence, &Message::Reply(reply));
     }
 
-    /// Answers the last greeting, changed by `change`.
+    /// Replies to the last greeting, modified by `change`.
     pub(crate) fn greet(&mut self, change: impl FnOnce(&mut HelloReply)) {
         let (sequence, mut reply) = self.greeting();
         change(&mut reply);
         self.say(reply.session, sequence, &Message::HelloReply(reply));
     }
 
-    /// The number of the last greeting, and what answers it.
+    /// Number of the last greeting, and its regular reply.
     pub(crate) fn greeting(&self) -> (u16, HelloReply) {
         let (sequence, hello) = self
             .sent
@@ -144,12 +144,12 @@ impl Script {
         (sequence, hello_reply(&hello))
     }
 
-    /// The request sent last: when, number, what.
+    /// Last request, with its time and number.
     pub(crate) fn last_request(&self) -> (Duration, u16, Request) {
         self.requests().pop().unwrap()
     }
 
-    /// All requests sent.
+    /// All requests so far.
     pub(crate) fn requests(&self) -> Vec<(Duration, u16, Request)> {
         self.sent
             .iter()
@@ -160,7 +160,7 @@ impl Script {
             .collect()
     }
 
-    /// How a ticket ended: `Ok` for an answer, `Err` with the error's text.
+    /// Outcome of a ticket: `Ok` for a reply, otherwise the error's text.
     pub(crate) fn outcome(&self, wanted: Ticket) -> Option<Result<(), String>> {
         self.events.iter().find_map(|event| match event {
             Event::Answered { ticket, .. }
@@ -176,7 +176,7 @@ impl Script {
     }
 }
 
-/// The body of a message.
+/// Encoded body of a message.
 pub(crate) fn body(message: &Message) -> Vec<u8> {
     message.encode_body(&mut [0; MAX_BODY]).unwrap().to_vec()
 }

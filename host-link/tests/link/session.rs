@@ -1,4 +1,4 @@
-//! The session against a robot that follows a script, in virtual time: when it asks again, when it gives up, what it says.
+//! Session against a scripted robot, in virtual time: retransmissions, time-outs and errors.
 
 use crate::scripted;
 
@@ -19,7 +19,7 @@ fn an_unanswered_greeting_is_repeated_and_given_up_with_advice() {
     let mut script = Script::new();
     let ticket = script.session.connect(script.now);
     script.run_to(MS * 20_000);
-    // 200 ms before anything was timed, doubled each time, at most 3 s.
+    // 200 ms before the first measurement, doubled each time, at most 3 s.
     assert_eq!(times(&script), [0, 200, 600, 1400, 3000]);
     let error = script.outcome(ticket).unwrap().unwrap_err();
     assert!(
@@ -93,7 +93,7 @@ fn a_robot_that_works_is_not_given_up() {
     assert_eq!(script.outcome(ticket), Some(Ok(())));
 }
 
-/// It is, though, after the longest time that any request takes.
+/// The request fails after the longest time that any request takes.
 #[test]
 fn a_robot_that_works_for_ever_ends_in_the_stated_time() {
     let mut script = Script::open(MS * 10);
@@ -117,7 +117,7 @@ fn a_robot_that_works_for_ever_ends_in_the_stated_time() {
     );
 }
 
-/// So does the check of an upload, long before the upload's own deadline.
+/// The check of an upload fails likewise, long before the upload's own deadline.
 #[test]
 fn a_check_that_lasts_for_ever_ends_the_upload() {
     let mut script = Script::open(MS * 10);
@@ -212,7 +212,7 @@ fn another_schema_is_a_sentence_too() {
 #[test]
 fn an_idle_session_feeds_the_lease_every_50_ms_as_it_is_answered() {
     let mut script = Script::open(MS * 10);
-    // The first one goes out with the greeting's answer; this takes its place.
+    // The first one is sent with the greeting's reply; this one replaces it.
     script.run_to(MS * 90);
     let mut heard = Vec::new();
     for round in 1..60_u64 {
@@ -236,7 +236,7 @@ fn an_idle_session_feeds_the_lease_every_50_ms_as_it_is_answered() {
         .map(|pair| pair[1] - pair[0])
         .collect();
     assert!(gaps.iter().all(|&gap| gap == 50), "{gaps:?}");
-    // Nothing at first, then what the robot said last.
+    // Nothing at first, then the robot's latest report.
     assert!(
         heard
             .iter()
@@ -250,7 +250,7 @@ fn an_idle_session_feeds_the_lease_every_50_ms_as_it_is_answered() {
 fn unanswered_keep_alives_are_few() {
     let mut script = Script::open(MS * 10);
     script.run_to(MS * 60_010);
-    // One, and what takes a lost one's place.
+    // One, and the replacement of a lost one.
     assert!(script.sent.len() < 30, "{}", script.sent.len());
 }
 
@@ -274,14 +274,14 @@ fn a_line_that_echoes_is_named() {
     }
 }
 
-/// The stop waits behind other bytes: what the robot tells says what ended the motion.
+/// The stop waits behind other bytes, and telemetry reports the cause that ended the motion.
 #[test]
 fn a_stop_that_the_lease_overtook_ends_with_that() {
     let mut script = Script::open(MS * 10);
     script.tell(StateName::Playing, StopCause::Boot);
     let ticket = script.session.request(script.now, Request::Stop);
     script.collect();
-    // At once, it is not overtaken but only just sent.
+    // Immediately after it was sent, the stop is not late.
     script.tell(StateName::Stopping, StopCause::LinkLost);
     script.run_to(MS * 600);
     assert_eq!(script.outcome(ticket), None);
@@ -291,12 +291,12 @@ fn a_stop_that_the_lease_overtook_ends_with_that() {
     assert!(script.events.iter().any(
         |event| matches!(event, Event::StoppedByItself { ticket: stopped, cause: StopCause::LinkLost } if *stopped == ticket)
     ));
-    // The stop's own work, whose answer was lost.
+    // The stop itself ended the motion; its reply was lost.
     let ticket = script.session.request(script.now, Request::Stop);
     script.run_to(MS * 1_300);
     script.tell(StateName::Settling, StopCause::Requested);
     assert_eq!(script.outcome(ticket), Some(Ok(())));
-    // To an e-stop only the latch is an answer.
+    // An e-stop ends only with the latch.
     let ticket = script.session.request(script.now, Request::EStop);
     script.run_to(MS * 2_000);
     script.tell(StateName::Stopped, StopCause::LinkLost);
@@ -316,7 +316,7 @@ fn an_idle_half_hour_does_not_age_the_next_request() {
     script.session.request(script.now, Request::Table);
     script.collect();
     let (_, after, _) = script.last_request();
-    // Numbers from half the range on would be older than the first, and the robot would do nothing.
+    // Numbers beyond half the range would be older than the first, and the robot would ignore them.
     assert_eq!(after.wrapping_sub(before), 1);
 }
 
@@ -353,7 +353,7 @@ fn a_stop_drops_everything_unanswered_and_goes_first() {
         .session
         .upload(script.now, 0, &[1; 2048], MS * 60_000);
     let status = script.session.request(script.now, Request::Status);
-    // Nothing was handed out since: the stop takes the place of what waits to be sent.
+    // Nothing was sent since, so the stop replaces the waiting bytes.
     let stop = script.session.request(script.now, Request::Stop);
     script.collect();
     assert_eq!(script.requests().len(), 1);
@@ -370,14 +370,14 @@ fn a_stop_drops_everything_unanswered_and_goes_first() {
 fn a_stop_does_not_weaken_an_estop_that_is_not_answered_yet() {
     let mut script = Script::open(MS * 10);
     script.session.request(script.now, Request::EStop);
-    // Its frame is lost; the operator presses stop as well.
+    // Its frame is lost, and the operator sends a stop too.
     script.collect();
     let stop = script.session.request(script.now, Request::Stop);
     script.collect();
     assert!(matches!(script.last_request().2, Request::EStop));
     script.reply(Reply::Done);
     assert_eq!(script.outcome(stop), Some(Ok(())));
-    // Once it is answered, a stop is a stop.
+    // After its reply, a stop is a plain stop again.
     script.session.request(script.now, Request::Stop);
     script.collect();
     assert!(matches!(script.last_request().2, Request::Stop));
@@ -454,7 +454,7 @@ fn chunks_in_flight_stay_below_the_window_and_at_the_line_s_pace() {
         gaps.iter().all(|gap| (10_500..11_000).contains(gap)),
         "{gaps:?}"
     );
-    // Answering two lets two more out.
+    // Two replies release two more.
     let second = chunks[1].1;
     script.say(
         SESSION,
@@ -555,7 +555,7 @@ fn garbage_and_half_frames_never_panic_nor_answer() {
     );
 }
 
-/// Bytes of the greeting's answer.
+/// Bytes of the greeting's reply.
 fn script_open_bytes() -> u64 {
     Script::open(Duration::from_millis(10))
         .session

@@ -1,6 +1,6 @@
-//! Whole sessions of an operator who uploads, arms, plays and stops over lines with every fault there is, in virtual time:
-//! each request ends in success or a stated failure within its deadline, acts at most once, and the robot ends with the
-//! table that was committed last.
+//! Complete sessions of an operator who uploads, arms, plays and stops over lines with every fault, in virtual time. Each
+//! request ends in success or a stated failure within its deadline and acts at most once, and the robot ends with the last
+//! committed table.
 
 use crate::tank_less;
 
@@ -15,16 +15,16 @@ use rand_chacha::ChaCha8Rng;
 use tank_less::{Line, circle, faulty};
 
 const MS: Duration = Duration::from_millis(1);
-/// Five tries, at most 3 s apart, and one beat; what the robot works at, a check of a table, is waited for in between.
+/// Longest request: five attempts, at most 3 s apart, one beat, and a check of a table in between.
 const REQUEST: Duration = Duration::from_millis(5 * 3000 + 20 + 3000);
 const UPLOAD: Duration = Duration::from_secs(40);
-/// An upload looks at its deadline once a beat, and is behind a request of its own.
+/// An upload checks its deadline once per beat, and follows a request of its own.
 const BEAT: Duration = Duration::from_millis(25);
-/// The tables an operator has: circles of these amplitudes.
+/// Tables of the operator: circles with these amplitudes.
 const AMPLITUDES: [f64; 4] = [0.4, 0.7, 1.0, 1.3];
 const PERIOD: Duration = Duration::from_secs(6);
 
-/// What 1000 sessions came to.
+/// Totals of 1000 sessions.
 #[derive(Debug, Default)]
 struct Tally {
     asked: u64,
@@ -67,20 +67,20 @@ fn random_faults(rng: &mut ChaCha8Rng) -> Faults {
     faults
 }
 
-/// An operator, and what the robot must hold by what it was told.
+/// Operator, with the expected state of the robot.
 struct Operator {
     seed: u64,
     robot: Robot<Line>,
     rng: ChaCha8Rng,
     tally: Tally,
-    /// What the last upload that ended well made active.
+    /// Active table according to the last successful upload.
     active: Option<u32>,
-    /// An upload failed since: its commit may or may not have acted.
+    /// An upload failed since; its commit may have acted.
     unsure: bool,
 }
 
 impl Operator {
-    /// Does something with the robot, and holds the time it takes against the deadline.
+    /// Runs an operation and checks its duration against the deadline.
     fn ask<T>(
         &mut self,
         deadline: Duration,
@@ -119,7 +119,7 @@ impl Operator {
         }
     }
 
-    /// As an operator would, until it is there again: outages are shorter than this.
+    /// Reconnects until it succeeds, as an operator would; interruptions are shorter than this.
     fn reconnect(&mut self) {
         for _ in 0..12 {
             let began = self.robot.port().now();
@@ -172,7 +172,7 @@ impl Operator {
         if begun.is_none() {
             return;
         }
-        // Soft start, the cycles, the longest search and one greeting more.
+        // Soft start, the cycles, the longest search and one more greeting.
         let most = PERIOD * cycles + Duration::from_secs(3 + 30) + REQUEST * 2;
         let ended = self.ask(most, "waiting", |robot| {
             robot.wait_until_finished(|_| ControlFlow::Continue(()))
@@ -182,7 +182,7 @@ impl Operator {
 
     fn stop(&mut self) {
         if self.ask(REQUEST, "a stop", Robot::stop).is_some() {
-            // Ramp of at most 0.8 s and half a second at neutral; the answer to the stop came later than the stop.
+            // Ramp of at most 0.8 s and half a second at neutral; the reply arrived later than the stop.
             self.robot.port_mut().inner_mut().pass(MS * 1340);
             let device = self.robot.port().inner().device();
             let off = device
@@ -237,7 +237,7 @@ fn session(seed: u64) -> Tally {
 }
 
 impl Operator {
-    /// The faults end. What does the robot hold, and what had it done?
+    /// Removes the faults and compares the robot's state and history with the expected ones.
     fn settle(mut self) -> Tally {
         let seed = self.seed;
         let clean = FaultPlan::at_host(Faults::none());
@@ -258,7 +258,7 @@ impl Operator {
         for (request, times) in &device.acts {
             assert_eq!(*times, 1, "seed {seed}: {request:?} acted more than once");
         }
-        // Every set-point of every play lay on a table that was committed.
+        // Every set-point of every play was on a committed table.
         for radius in &device.radii {
             let of_a_table = AMPLITUDES.iter().any(|amplitude| {
                 (amplitude * 100.0 - *radius as f64).abs() < 0.5
@@ -304,7 +304,7 @@ fn sessions(seeds: std::ops::Range<u64>) {
         sum.longest_upload.as_secs_f64(),
     );
     assert_eq!(sum.asked, sum.well + sum.failed);
-    // Most goes well, or the faults were so bad that nothing was tried.
+    // Most operations succeed; otherwise the faults would hide the behaviour under test.
     assert!(sum.well > 6 * count && sum.uploads_well > count, "{sum:?}");
 }
 

@@ -1,4 +1,4 @@
-//! Calls over a link that falls silent: what is reported, when each call ends, and a stop that ends a wait.
+//! Calls over a link that becomes silent: reports, the end of each call, and a stop during a wait.
 
 use crate::tank_less;
 
@@ -15,7 +15,7 @@ use tank_less::{Line, circle, connect, faulty, upload};
 const MS: Duration = Duration::from_millis(1);
 const FOR_EVER: Duration = Duration::from_hours(1);
 
-/// Reports, with the time of the port's clock at which the silence began.
+/// Reports of silences, in order.
 type Reports = Arc<Mutex<Vec<Silence>>>;
 
 fn reporting() -> (Reports, Callbacks) {
@@ -35,7 +35,7 @@ fn robot() -> (Robot<Line>, Reports) {
     (robot, reports)
 }
 
-/// The one report of a silence that began, which must come after two seconds.
+/// Checks the single report of a silence, which must come after two seconds.
 #[track_caller]
 fn began(reports: &Reports, doing: &str) {
     let reports = reports.lock().unwrap();
@@ -59,7 +59,7 @@ fn cut(robot: &mut Robot<Line>, after: Duration, lasting: Duration) {
 
 type Call = (&'static str, fn(&mut Robot<Line>) -> Result<(), LinkError>);
 
-/// Every kind of call against a robot that says nothing more: reported after two seconds, and over in the time that is stated.
+/// Every kind of call against a silent robot is reported after two seconds and ends in the stated time.
 #[test]
 fn every_call_reports_silence_after_two_seconds_and_gives_up() {
     let calls: [(Call, Duration); 7] = [
@@ -93,7 +93,7 @@ fn every_call_reports_silence_after_two_seconds_and_gives_up() {
     ];
     for ((doing, call), at_most) in calls {
         let (mut robot, reports) = robot();
-        // A quick line has a round trip; without one each try waits longest.
+        // A fast line has a short round trip; without a measurement each attempt waits longest.
         robot
             .listen(MS * 200, |_| ControlFlow::Continue(()))
             .unwrap();
@@ -110,7 +110,7 @@ fn every_call_reports_silence_after_two_seconds_and_gives_up() {
     }
 }
 
-/// `play` against a robot that froze said nothing for 34.6 s.
+/// Regression: `play` against a frozen robot returned nothing for 34.6 s.
 #[test]
 fn a_play_that_freezes_is_given_up_within_ten_seconds() {
     let (mut robot, reports) = robot();
@@ -141,7 +141,7 @@ fn a_link_that_comes_back_is_reported_too() {
         panic!("{reports:?}")
     };
     assert!((MS * 2900..MS * 3600).contains(&silent), "{silent:?}");
-    // A short one is not.
+    // A short silence is not reported.
     let (mut robot, reports) = self::robot();
     cut(&mut robot, MS * 1000, MS * 1500);
     robot
@@ -169,7 +169,7 @@ fn a_robot_that_never_answers_a_greeting_is_reported() {
     began(&reports, "connecting");
 }
 
-/// The stop goes out while a request still waits for its reply, which never comes.
+/// The stop is sent while a request waits for a reply that never comes.
 #[test]
 fn a_stop_ends_the_wait_for_a_reply() {
     for halt in [Halt::Stop, Halt::EStop] {

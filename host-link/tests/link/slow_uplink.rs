@@ -1,5 +1,5 @@
-//! Promise R5 behind a slow uplink with a deep buffer: whatever a dead host left there, the robot stops within the bound that
-//! `docs/security.md` states, and whoever sends a stop is told what ended the motion.
+//! Promise R5 behind a slow uplink with a deep buffer: whatever a dead host left in it, the robot stops within the bound of
+//! `docs/security.md`, and the sender of a stop learns the cause that ended the motion.
 
 use crate::haste;
 use crate::tank_less;
@@ -18,12 +18,12 @@ use tank_less::{Line, circle, faulty};
 const MS: Duration = Duration::from_millis(1);
 const RATES: [u32; 6] = [200, 500, 1_000, 2_000, 5_000, 11_000];
 const BUFFERS: [usize; 5] = [512, 1_024, 2_048, 4_096, 8_192];
-/// From the last byte of a host to the ramp: what is fresh, the lease, a tick.
+/// From the last byte of a host to the ramp: freshness, lease, one tick.
 const TO_RAMP: Duration = Duration::from_millis(1_480);
-/// From the last fresh keep-alive to no pulses: the lease and a tick, the longest ramp, half a second at neutral.
+/// From the last fresh keep-alive to pulses off: lease, one tick, the longest ramp, half a second at neutral.
 const TO_OFF: Duration = Duration::from_secs(2);
 
-/// A host whose robot plays without end, before the line gets worse.
+/// Returns a host whose robot plays endlessly, before the line degrades.
 fn playing(seed: u64) -> HostRobot<Line> {
     let mut robot = HostRobot::connect(faulty(Faults::none(), seed), seed).unwrap();
     let table = GaitTable::from_fn(64, |u| {
@@ -56,7 +56,7 @@ fn worsen(robot: &mut HostRobot<Line>, rate: u32, buffer: usize) {
     robot.port_mut().set_plan(FaultPlan::at_host(slow));
 }
 
-/// Time from a moment to the ramp and from the last fresh keep-alive to no pulses, with nobody at the host's end.
+/// Time to the ramp, and from the last fresh keep-alive to pulses off, without a host.
 fn left_alone(robot: HostRobot<Line>, from: Duration) -> (Duration, Duration) {
     let mut port = robot.into_port();
     let mut bytes = [0; 512];
@@ -72,7 +72,7 @@ fn left_alone(robot: HostRobot<Line>, from: Duration) -> (Duration, Duration) {
     )
 }
 
-/// The host dies at a moment, with its buffer full: once with nothing else to do, once in the middle of an upload.
+/// Kills the host at a moment, with its buffer full: once idle, once during an upload.
 fn killed(rate: u32, buffer: usize, moment: u32) -> (Duration, Duration) {
     let mut robot = playing(u64::from(moment));
     worsen(&mut robot, rate, buffer);
@@ -98,7 +98,7 @@ fn killed(rate: u32, buffer: usize, moment: u32) -> (Duration, Duration) {
     left_alone(robot, from)
 }
 
-/// Time from a stop behind a full buffer to the ramp, and what the host says of it.
+/// Time from a stop behind a full buffer to the ramp, and the cause that the host reports.
 fn stopped(rate: u32, buffer: usize, moment: u32) -> (Duration, StoppedBy) {
     let mut robot = playing(u64::from(moment));
     worsen(&mut robot, rate, buffer);
@@ -153,7 +153,7 @@ fn behind_a_slow_uplink_the_robot_stops_in_time() {
     insta::assert_snapshot!(text);
 }
 
-/// The uplink is gone, the downlink is not: what telemetry told is the answer, and soon.
+/// The uplink is dead, the downlink works: telemetry ends the wait soon.
 #[test]
 fn a_link_loss_that_was_told_ends_the_wait_within_two_seconds() {
     let mut robot = playing(1);

@@ -1,5 +1,5 @@
-//! The real brain behind a virtual wire, without servos or a tank: what the link does, and nothing else.
-#![allow(dead_code)] // each test uses its part
+//! The real brain behind a virtual wire, without servos or tank, to observe the link alone.
+#![allow(dead_code)] // each test uses a part of it
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::ControlFlow;
@@ -17,32 +17,32 @@ use link_protocol::{
     StateName, TableInfo, TangentialDrag,
 };
 
-/// Hash of the settings of a robot that was just made.
+/// Hash of the settings of a new robot.
 pub(crate) fn settings_as_built() -> u32 {
     Robot::new(1).brain.held().settings_crc32
 }
 
-/// A brain and its clock.
+/// Brain with its clock.
 pub(crate) struct Robot {
     brain: Brain,
     flash: MemoryStorage,
     now_us: u64,
     next_tick_us: u64,
     pub(crate) output: Option<Output>,
-    /// When pulses were last on.
+    /// Time at which pulses were last on.
     pub(crate) powered: Duration,
-    /// When the robot last began to stop.
+    /// Time at which the robot last began to stop.
     pub(crate) ramp: Duration,
-    /// When a keep-alive last came that was fresh, and the robot's time that it told.
+    /// Time of the last fresh keep-alive, and the robot time that it echoed.
     pub(crate) fresh: Duration,
     heard: Duration,
-    /// When the first piece of an upload first came, and the last one last.
+    /// Time at which the first chunk of an upload first arrived, and the last one last.
     pub(crate) pieces: (Duration, Duration),
-    /// Times each request acted, by session and number; stops, which act always, are left out.
+    /// Number of times that each request acted, by session and number, except for stops, which always act.
     pub(crate) acts: BTreeMap<(u16, u16), u32>,
-    /// Checksums of the tables that commits made active or promised to, in order.
+    /// Checksums of the tables that commits activated or scheduled, in order.
     pub(crate) committed: Vec<u32>,
-    /// Distances of the set-points from neutral while playing, in 0.01 rad: a circle has one.
+    /// Distances of the set-points from neutral during a play, in 0.01 rad; a circle has one.
     pub(crate) radii: BTreeSet<i64>,
     decoder: link_protocol::Decoder,
     said: link_protocol::Decoder,
@@ -93,7 +93,7 @@ impl Robot {
         }
     }
 
-    /// Looks at a whole frame before the brain's answer to it.
+    /// Inspects a complete frame before the brain replies.
     fn witness(&mut self, received: &link_protocol::Received, acted: bool) {
         if let Ok(Message::Heartbeat(heartbeat)) = &received.message {
             let (now, heard) = (
@@ -138,7 +138,7 @@ pub(crate) fn configuration(max_angle: f32) -> Configuration {
     }
 }
 
-/// A circle of the largest table: 2 kB.
+/// Circle in the largest table: 2 kB.
 pub(crate) fn circle(amplitude: f64) -> GaitTable {
     GaitTable::from_fn(512, |u| {
         let (sin, cos) = (std::f64::consts::TAU * (u + 0.125)).sin_cos();
@@ -149,7 +149,7 @@ pub(crate) fn circle(amplitude: f64) -> GaitTable {
 
 pub(crate) type Line = FaultyPort<VirtualPort<Robot>>;
 
-/// Connects however bad the line: where five greetings were lost, an operator would try again as well.
+/// Connects over any line: after five lost greetings an operator would try again.
 pub(crate) fn connect(faults: &str, seed: u64) -> HostRobot<Line> {
     for attempt in 0..6 {
         let line = faulty(faults.parse().unwrap(), seed + 1000 * attempt);
@@ -166,7 +166,7 @@ pub(crate) fn upload(robot: &mut HostRobot<Line>, table: &[u8]) -> Result<TableI
     robot.upload(table, Duration::from_mins(1), |_| ControlFlow::Continue(()))
 }
 
-/// The host's end of a line with faults to a fresh robot.
+/// Host end of a faulty line to a new robot.
 pub(crate) fn faulty(faults: Faults, seed: u64) -> FaultyPort<VirtualPort<Robot>> {
     let line = VirtualPort::new(Robot::new(5), WireSpeed::robot());
     FaultyPort::new(line, FaultPlan::at_host(faults), seed)

@@ -1,4 +1,4 @@
-//! Uploads to the real brain over lines with faults, in virtual time: they arrive right, act once, resume, and in time.
+//! Uploads to the real brain over faulty lines, in virtual time: correct, at most once, resumable, and in time.
 
 use crate::tank_less;
 
@@ -22,7 +22,7 @@ fn a_clean_line_uploads_at_four_fifths_of_its_pace() {
     let info = upload(&mut robot, table.bytes()).unwrap();
     let committed = robot.port().now().abs_diff(began);
     assert_eq!((info.knots, info.crc32), (512, table.crc32()));
-    // What the wire carried for the pieces, from the first to the last.
+    // Time for the chunks on the wire, from the first to the last.
     let pieces = robot.port().inner().device().pieces;
     let goodput = 1944.0 / pieces.1.abs_diff(pieces.0).as_secs_f64();
     println!(
@@ -31,7 +31,7 @@ fn a_clean_line_uploads_at_four_fifths_of_its_pace() {
         11520.0 * 104.0 / 124.0
     );
     assert!(goodput > 0.8 * 11520.0, "{goodput}");
-    // The check of the table takes up to a second, during which the robot is asked whether it still works.
+    // The check of the table takes up to a second, during which the status is polled.
     assert!(committed < MS * 1500, "{committed:?}");
     assert!(robot.link_counters().retransmissions <= 10);
 }
@@ -55,7 +55,7 @@ fn uploads_arrive_right_and_act_once_whatever_the_line_does() {
                 "{loss}, seed {seed}"
             );
             let (counters, in_vain) = settled(&mut robot, Robot::counters);
-            // Begin, Commit and the request for the counters before (which it does not count itself), each once.
+            // Begin, Commit and the earlier request for the counters (which does not count itself), each once.
             let acted = counters.acted - before;
             assert!(
                 (3..=3 + in_vain).contains(&acted),
@@ -76,7 +76,7 @@ fn uploads_arrive_right_and_act_once_whatever_the_line_does() {
     }
 }
 
-/// Asks again where five tries were not enough, as an operator would; tells how often that was.
+/// Repeats a request after five failed attempts, as an operator would; returns the number of repeats.
 fn settled<T>(
     robot: &mut Robot<Line>,
     mut ask: impl FnMut(&mut Robot<Line>) -> Result<T, LinkError>,
@@ -143,7 +143,7 @@ fn a_long_disconnection_is_an_error_and_the_next_upload_resumes() {
     );
 }
 
-/// R9 of the robot's promises.
+/// Promise R9.
 #[test]
 fn r9_a_2_kb_table_in_under_a_minute_for_100_seeds() {
     let mut times: Vec<Duration> = Vec::new();

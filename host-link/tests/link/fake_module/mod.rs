@@ -1,5 +1,5 @@
-//! An HC-05 in AT mode behind a port whose clock only waiting moves.
-#![allow(dead_code)] // each test uses its part
+//! HC-05 in AT mode behind a port whose clock advances only during waits.
+#![allow(dead_code)] // each test uses a part of it
 
 use std::collections::VecDeque;
 use std::io;
@@ -7,18 +7,18 @@ use std::time::Duration;
 
 use host_link::Port;
 
-/// Makers differ in how they write and take a PIN.
+/// PIN style of a maker.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Maker {
-    /// Takes and tells a bare PIN; quotes would become a part of it.
+    /// Accepts and reports a bare PIN; quotes would become part of it.
     Version2,
-    /// Wants quotes, refuses a bare PIN with 1D.
+    /// Requires quotes, and refuses a bare PIN with 1D.
     Version3,
-    /// As `Version3`, and will not tell its PIN.
+    /// As `Version3`, but does not report its PIN.
     Forgetful,
 }
 
-/// What is wrong at the bench.
+/// Fault at the bench.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Trouble {
     None,
@@ -34,7 +34,7 @@ pub(crate) enum Trouble {
     KeepsNothing,
 }
 
-/// The module, and the port it hangs on.
+/// Module and its port.
 #[derive(Debug)]
 pub(crate) struct FakeModule {
     maker: Maker,
@@ -44,7 +44,7 @@ pub(crate) struct FakeModule {
     pub(crate) uart: String,
     pub(crate) role: u8,
     pub(crate) was_reset: bool,
-    /// Settings that it took.
+    /// Number of accepted settings.
     pub(crate) sets: usize,
     commands: usize,
     line: String,
@@ -141,7 +141,7 @@ impl FakeModule {
 
 impl Port for FakeModule {
     fn read(&mut self, buf: &mut [u8], timeout: Duration) -> io::Result<usize> {
-        let count = buf.len().min(self.out.len()).min(5); // answers come in pieces
+        let count = buf.len().min(self.out.len()).min(5); // replies arrive in pieces
         for (place, byte) in buf.iter_mut().zip(self.out.drain(..count)) {
             *place = byte;
         }
