@@ -1,6 +1,6 @@
-//! Hands the linker its scripts, and the program the commit it was built from.
+//! Build script: passes the linker scripts to the linker, and the commit of the sources to the program.
 //!
-//! The memory layout is `memory.x` at the workspace's root, where Cargo calls the linker.
+//! The memory layout is `memory.x` at the workspace's root, where Cargo runs the linker.
 
 use std::env;
 use std::path::Path;
@@ -10,12 +10,12 @@ fn main() {
     println!("cargo:rerun-if-changed=build.rs");
     println!("cargo:rerun-if-changed=../memory.x");
     if env::var("CARGO_CFG_TARGET_OS").as_deref() != Ok("none") {
-        return; // on the host there is only the stub `main`
+        return; // on the host there is only a stub `main`
     }
     for argument in ["--nmagic", "-Tlink.x", "-Tlink-rp.x", "-Tdefmt.x"] {
         println!("cargo:rustc-link-arg-bins={argument}");
     }
-    // Without git (a source archive) the robot says eight zeros.
+    // Without git (a source archive) the commit is reported as eight zeros.
     let commit = git(&["rev-parse", "--short=8", "HEAD"]).unwrap_or_default();
     println!("cargo:rustc-env=SWIMMER_COMMIT={commit:0<8.8}");
     if let Some(log) = git(&["rev-parse", "--git-path", "logs/HEAD"])

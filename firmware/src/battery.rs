@@ -1,4 +1,4 @@
-//! The servo pack's voltage, held at its minimum between two control ticks: a sag of a millisecond must not be missed.
+//! Battery monitor: minimum of the servo pack's voltage between two control ticks, so that a dip of a millisecond is detected.
 
 use embassy_rp::Peri;
 use embassy_rp::adc::{Adc, Blocking, Channel, Config};
@@ -9,8 +9,8 @@ use portable_atomic::{AtomicU16, Ordering};
 
 use crate::build_setting::number;
 
-/// How many times the pack's voltage is above the pin's, in thousandths (3200 = 22 kΩ over 10 kΩ). `None`: no divider is
-/// soldered, the pin is not read and the battery is reported as not measured.
+/// Ratio of the pack's voltage to the pin's, in thousandths (3200 = 22 kΩ over 10 kΩ). Without a divider (`None`) the pin is
+/// not read and the battery is reported as not measured.
 const DIVIDER_MILLI: Option<u32> = number(option_env!("SWIMMER_BATTERY_DIVIDER_MILLI"));
 const _: () = assert!(
     match DIVIDER_MILLI {
@@ -21,14 +21,14 @@ const _: () = assert!(
 );
 /// ADC reference [mV]: the boards' 3.3 V rail.
 const REFERENCE_MV: u64 = 3300;
-/// A reading that never occurs: the ADC has 12 bits.
+/// Marker for no sample; the 12-bit ADC never returns it.
 const NONE: u16 = u16::MAX;
-/// Samples a second: twenty a control tick, each 2 µs of the CPU.
+/// Sampling rate: twenty samples per control tick, each 2 µs of the CPU.
 const RATE_HZ: u64 = 1000;
 
 static LOWEST: AtomicU16 = AtomicU16::new(NONE);
 
-/// Samples the pin for ever and holds the minimum.
+/// Samples the pin forever and stores the minimum.
 #[embassy_executor::task]
 pub(crate) async fn sample(adc: Peri<'static, ADC>, pin: Peri<'static, PIN_26>) {
     if DIVIDER_MILLI.is_none() {
@@ -45,7 +45,7 @@ pub(crate) async fn sample(adc: Peri<'static, ADC>, pin: Peri<'static, PIN_26>) 
     }
 }
 
-/// Lowest pack voltage [mV] since the last call; `None` without a divider or before the first sample.
+/// Lowest pack voltage since the last call, mV. Returns `None` without a divider or before the first sample.
 pub(crate) fn lowest_mv() -> Option<u16> {
     let reading = LOWEST.swap(NONE, Ordering::Relaxed);
     if reading == NONE {

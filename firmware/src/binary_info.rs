@@ -1,6 +1,6 @@
-//! What `picotool info` tells of the image, on a board or in a file: name, version with commit, board.
+//! Binary information for `picotool info`, on a board or in a file: name, version with commit, board.
 
-// SAFETY of the section: `memory.x` keeps it for addresses of entries and nothing else, and these are such addresses.
+// SAFETY of the section: `memory.x` reserves it for addresses of entries, and these are such addresses.
 #![allow(unsafe_code)]
 
 use core::ffi::CStr;

@@ -1,4 +1,4 @@
-//! Which pin does what, on both boards (one truth; the wiring table of the README is this file in words).
+//! Pin assignment of both boards. The wiring table of the README describes this file.
 
 use crate::build_setting::number;
 use embassy_rp::Peri;
@@ -17,7 +17,7 @@ compile_error!(
 #[cfg(not(any(feature = "nano-connect", feature = "pico")))]
 compile_error!("no board chosen: add `--features nano-connect` or `--features pico`");
 
-/// GPIO of the HC-05's STATE where it is not the board's usual one.
+/// GPIO of the HC-05's STATE, if it differs from the board's default.
 const STATE_PIN: Option<u32> = number(option_env!("SWIMMER_STATE_PIN"));
 
 /// GPIO of the on-board LED.
@@ -26,24 +26,24 @@ pub(crate) const LED: u32 = 6;
 #[cfg(not(feature = "nano-connect"))]
 pub(crate) const LED: u32 = 25;
 
-/// What the boards share and where they differ (LED, STATE pin and BOOTSEL button only).
+/// Peripherals by function. The boards differ in LED, STATE pin and BOOTSEL button only.
 pub(crate) struct Board {
-    /// The serial link to the HC-05: UART0.
+    /// Serial link to the HC-05: UART0.
     pub(crate) uart: Peri<'static, UART0>,
     /// TX to the HC-05's RXD: GPIO0 (Nano D1, Pico GP0).
     pub(crate) link_tx: Peri<'static, PIN_0>,
     /// RX from the HC-05's TXD: GPIO1 (Nano D0, Pico GP1).
     pub(crate) link_rx: Peri<'static, PIN_1>,
-    /// The HC-05's STATE, high while connected: Nano D2 = GPIO25, Pico GP22, unless [`STATE_PIN`] names another.
+    /// STATE of the HC-05, high while connected: Nano D2 = GPIO25, Pico GP22, unless [`STATE_PIN`] selects another.
     pub(crate) link_state: Peri<'static, AnyPin>,
-    /// The USB socket.
+    /// USB socket.
     pub(crate) usb: Peri<'static, USB>,
-    /// The presence jumper, to ground: GPIO5 (Nano D10, Pico GP5).
+    /// Bench jumper, to ground: GPIO5 (Nano D10, Pico GP5).
     pub(crate) presence: Peri<'static, PIN_5>,
-    /// The Pico's button.
+    /// Button of the Pico.
     #[cfg(feature = "pico")]
     pub(crate) bootsel: Peri<'static, BOOTSEL>,
-    /// Both servos on one slice, so that they switch in the same period.
+    /// PWM slice of both servos, so that they switch in the same period.
     pub(crate) servo_slice: Peri<'static, PWM_SLICE0>,
     /// Front joint φ₁: GPIO16, channel A (Nano D4, Pico GP16).
     pub(crate) servo_front: Peri<'static, PIN_16>,
@@ -51,18 +51,18 @@ pub(crate) struct Board {
     pub(crate) servo_back: Peri<'static, PIN_17>,
     /// On-board LED: Nano D13 = GPIO6, Pico GP25.
     pub(crate) led: Peri<'static, AnyPin>,
-    /// Analogue-to-digital converter of the battery pin.
+    /// ADC of the battery pin.
     pub(crate) adc: Peri<'static, ADC>,
-    /// Battery through a divider: GPIO26 (Nano A0, Pico GP26).
+    /// Battery voltage through a divider: GPIO26 (Nano A0, Pico GP26).
     pub(crate) battery: Peri<'static, PIN_26>,
-    /// Gait slots and settings.
+    /// Flash with gait slots and settings.
     pub(crate) flash: Peri<'static, FLASH>,
-    /// The watchdog, with its scratch registers.
+    /// Watchdog, with its scratch registers.
     pub(crate) watchdog: Peri<'static, WATCHDOG>,
 }
 
 impl Board {
-    /// Sorts the chip's peripherals by what they do on this board.
+    /// Assigns the chip's peripherals to their functions.
     pub(crate) fn new(p: Peripherals) -> Self {
         const {
             assert!(

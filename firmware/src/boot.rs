@@ -1,4 +1,4 @@
-//! What the brain is told at the start: who it is and how it came up.
+//! Boot data for the brain: identity, cause of the start and retained state.
 
 use embassy_rp::pac::VREG_AND_CHIP_RESET;
 use embassy_rp::watchdog::ResetReason as WatchdogReset;
@@ -9,7 +9,7 @@ use crate::uart::RECEIVE_BUFFER;
 use crate::watchdog::Watchdog;
 use crate::{random, retained_ram};
 
-/// Everything [`gait_player::Brain::new`] asks for.
+/// Configuration for [`gait_player::Brain::new`].
 pub(crate) fn brain_config(watchdog: &mut Watchdog, whole_chip: bool) -> BrainConfig {
     let identity = Identity {
         firmware: VERSION,
@@ -32,7 +32,8 @@ const VERSION: FirmwareVersion = FirmwareVersion {
     commit: commit(env!("SWIMMER_COMMIT")),
 };
 
-/// A watchdog's reset that was none of ours, or is long over, counts as one by hand: no fault, and RAM is as it was.
+/// Cause of the start. A watchdog reset that is not ours, or is outdated, counts as the reset pin: no fault, and the RAM is
+/// intact.
 fn reset_reason(watchdog: &Watchdog, whole_chip: bool) -> ResetReason {
     let had_run = || VREG_AND_CHIP_RESET.chip_reset().read().had_run();
     match watchdog.reset_reason() {
@@ -51,7 +52,7 @@ fn boot(watchdog: &mut Watchdog, whole_chip: bool) -> Boot {
         reset_reason: reset_reason(watchdog, whole_chip),
         nonce: random as u32,
         session_seed: (random >> 32) as u16,
-        // The scratch register is empty after the reset pin: an e-stop must outlive that too.
+        // The reset pin clears the scratch register, but an e-stop must survive it.
         kept: match watchdog.kept() {
             0 => retained_ram::kept(),
             word => word,

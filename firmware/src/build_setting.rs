@@ -1,6 +1,6 @@
-//! Settings of a build: environment variables with a whole number, read by the compiler.
+//! Build settings: environment variables with a whole number, evaluated at compile time.
 
-/// The number of a setting; `None` where it is not set. Anything else stops the build.
+/// Parses a setting. Returns `None` if it is not set. An invalid value fails the build.
 pub(crate) const fn number(setting: Option<&str>) -> Option<u32> {
     let Some(text) = setting else { return None };
     match u32::from_str_radix(text, 10) {

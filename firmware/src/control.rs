@@ -1,4 +1,4 @@
-//! The control task: the one place that calls the brain, at every servo period and whenever bytes came.
+//! Control task: the only caller of the brain, at every servo period and whenever bytes arrive.
 
 use embassy_futures::select::{Either3, select3};
 use embassy_rp::gpio::Input;
@@ -15,7 +15,7 @@ use crate::{battery, board, retained_ram, uart, usb};
 
 const TICK: Duration = Duration::from_micros(TICK_US as u64);
 
-/// What the control task owns.
+/// Resources of the control task.
 pub(crate) struct Control {
     pub(crate) brain: &'static mut Brain,
     pub(crate) servos: Servos,
@@ -26,14 +26,14 @@ pub(crate) struct Control {
     pub(crate) presence: Presence,
 }
 
-/// Runs for ever in the interrupt executor.
+/// Runs forever in the interrupt executor.
 #[embassy_executor::task]
 pub(crate) async fn control(mut control: Control) {
     let (mut over_uart, mut over_usb) = ([0; 64], [0; 64]);
     let mut next_tick = Instant::now() + TICK;
     control.servos.start();
     loop {
-        // The tick stands first: a flood of bytes cannot hold it up.
+        // The tick has priority: a flood of bytes cannot delay it.
         let event = select3(
             Timer::at(next_tick),
             uart::LINE.received.read(&mut over_uart),
@@ -43,7 +43,7 @@ pub(crate) async fn control(mut control: Control) {
             Either3::First(()) => {
                 control.tick();
                 next_tick += TICK;
-                // Erasing flash stops everything. Ticks missed meanwhile are left out; the others stay where they were.
+                // Erasing flash blocks everything. Missed ticks are skipped; the grid does not move.
                 while next_tick < Instant::now() {
                     next_tick += TICK;
                 }
@@ -51,7 +51,7 @@ pub(crate) async fn control(mut control: Control) {
             Either3::Second(count) => control.receive(Transport::Uart, over_uart.get(..count)),
             Either3::Third(count) => control.receive(Transport::Usb, over_usb.get(..count)),
         }
-        // Before the answer leaves: an e-stop that was acknowledged outlives a reset that comes before the next tick.
+        // Before the reply is sent: an acknowledged e-stop survives a reset before the next tick.
         control.watchdog.keep(control.brain.kept());
         retained_ram::keep(control.brain.kept());
         control.hand_over_bytes();
@@ -59,8 +59,8 @@ pub(crate) async fn control(mut control: Control) {
 }
 
 impl Control {
-    /// A function of its own, in RAM: `memory.x` says why.
-    // SAFETY of the section: it holds code of the chip, and is copied to RAM before any code of ours runs.
+    /// A separate function in RAM; `memory.x` gives the reason.
+    // SAFETY of the section: it holds code of the chip, and is copied to RAM before any of our code runs.
     #[allow(unsafe_code)]
     #[unsafe(link_section = ".fast.tick")]
     #[inline(never)]
@@ -82,7 +82,7 @@ impl Control {
         }
     }
 
-    /// What takes its time.
+    /// Slow work, done while the robot is stopped.
     #[inline(never)]
     fn while_stopped(&mut self, output: &Output) {
         if output.storage_wanted
@@ -104,7 +104,7 @@ impl Control {
         self.brain.receive(now_us(), transport, bytes);
     }
 
-    /// Moves what the brain wants to send to where it leaves, as far as there is room.
+    /// Copies the brain's outgoing bytes to the transmitters, as far as they have space.
     fn hand_over_bytes(&mut self) {
         let brain = &mut *self.brain;
         uart::LINE.fill(|bytes| brain.transmit(Transport::Uart, bytes));

@@ -1,4 +1,4 @@
-//! The end of a crash: a note for the next start, then a reset at once, which takes the pulses away.
+//! Crash handler: stores a note for the next start, then resets at once, which ends the pulses.
 
 use core::panic::PanicInfo;
 
@@ -17,8 +17,8 @@ fn panic(info: &PanicInfo<'_>) -> ! {
     end(|| CrashNote::panicked(file, line, info.message()))
 }
 
-// SAFETY: a fault may come at any instruction, so the attribute wants it unsafe. Nothing here relies on what was
-// interrupted, and none of that runs again. (A stack that overflowed has no room for this: then the watchdog resets.)
+// SAFETY: a fault may occur at any instruction, so the attribute requires `unsafe`. The handler does not rely on the
+// interrupted code, which never continues. (After a stack overflow it may not run; then the watchdog resets.)
 #[allow(unsafe_code)]
 #[exception]
 unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
@@ -28,13 +28,13 @@ unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
 fn end(note: impl FnOnce() -> CrashNote) -> ! {
     static ENDING: AtomicBool = AtomicBool::new(false);
     cortex_m::interrupt::disable();
-    // A crash while a crash is told has only the reset left.
+    // After a crash within the crash handler, only the reset remains.
     if !ENDING.swap(true, Ordering::Relaxed) {
         let note = note();
         retained_ram::leave(note);
         defmt::error!("crashed: {=str}", note.message().as_str());
     }
-    // All but the oscillators is reset, the pins too.
+    // Resets everything except the oscillators, including the pins.
     pac::PSM
         .wdsel()
         .write_value(pac::psm::regs::Wdsel(0x0001_FFFC));

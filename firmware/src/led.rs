@@ -1,9 +1,9 @@
-//! The on-board LED: shows what the brain says, and flashes at a cycle's start for the cameras.
+//! On-board LED: state of the brain, and a flash at each cycle's start for the cameras.
 
 use embassy_rp::Peri;
 use embassy_rp::gpio::{AnyPin, Level, Output};
 
-/// The LED, active high on both boards.
+/// On-board LED, active high on both boards.
 pub(crate) struct Led {
     pin: Output<'static>,
 }

@@ -1,14 +1,14 @@
-//! Between a way to the robot and the control task: bytes that came, bytes that are to leave. Each way has one.
+//! Byte buffers between a transport and the control task: received and outgoing bytes.
 
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::pipe::Pipe;
 
-/// Bytes that may wait for the brain.
+/// Capacity for received bytes.
 pub(crate) const RECEIVED: usize = 1024;
-/// Bytes that may wait for the transmitter, a few frames.
+/// Capacity for outgoing bytes, a few frames.
 const TO_SEND: usize = 512;
 
-/// A way to the robot, as the control task sees it.
+/// Buffers of a transport.
 pub(crate) struct Line {
     /// Bytes for the control task.
     pub(crate) received: Pipe<CriticalSectionRawMutex, RECEIVED>,
@@ -24,7 +24,7 @@ impl Line {
         }
     }
 
-    /// Moves what `source` has to say into the pipe, as far as there is room. To be called by the control task alone.
+    /// Copies bytes from `source` to the pipe, as far as they fit. Called only by the control task.
     pub(crate) fn fill(&self, mut source: impl FnMut(&mut [u8]) -> usize) {
         let mut bytes = [0; 64];
         loop {
@@ -33,7 +33,7 @@ impl Line {
             if count == 0 {
                 return;
             }
-            // There is room, for there is one writer; but one write ends where the pipe's ring wraps.
+            // All bytes fit, because there is one writer; but one write ends where the pipe's ring wraps.
             let mut rest = &bytes[..count];
             while let Ok(written) = self.to_send.try_write(rest)
                 && written < rest.len()

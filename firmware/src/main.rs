@@ -1,5 +1,5 @@
-//! The thin RP2040 shell around `gait-player`. It moves bytes and time between the chip and `gait_player::Brain`, and
-//! decides nothing.
+//! Firmware for the RP2040: the hardware shell of `gait-player`. It moves bytes and time between the chip and
+//! `gait_player::Brain`; all decisions are made there.
 //!
 //! ```text
 //!  thread executor                        interrupt executor (SWI_IRQ_1), above the thread and USB, below the UART
@@ -14,10 +14,10 @@
 //!  └────────────────┘
 //! ```
 //!
-//! One file for each peripheral; `board.rs` has the pins, `control.rs` the loop.
+//! There is one file per peripheral; `board.rs` has the pins, `control.rs` the main loop.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
-// `usize` has the chip's 32 bits.
+// `usize` is 32 bits wide on the chip.
 #![allow(clippy::cast_possible_truncation)]
 
 #[cfg(target_os = "none")]

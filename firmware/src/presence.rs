@@ -1,10 +1,10 @@
-//! Somebody at the robot: a jumper from a pin to ground, and on the Pico its BOOTSEL button.
+//! Presence of a person: a jumper from a pin to ground, and on the Pico its BOOTSEL button.
 
 use embassy_rp::Peri;
 use embassy_rp::gpio::{Input, Pull};
 use embassy_rp::peripherals::PIN_5;
 
-/// The jumper's pin. Pulled up, so that a wire that is not there is nobody.
+/// Pin of the jumper, pulled up, so that an open pin means absence.
 pub(crate) struct Presence {
     jumper: Input<'static>,
 }
@@ -16,14 +16,14 @@ impl Presence {
         }
     }
 
-    /// Whether the jumper is closed or the button pressed.
+    /// Returns true if the jumper is closed or the button pressed.
     pub(crate) fn shows(&self) -> bool {
         self.jumper.is_low() || button::is_pressed()
     }
 }
 
-/// The BOOTSEL button pulls at the flash chip's select line, so nothing can be read from flash while it is asked for: 30 µs
-/// with interrupts off. That is done in the thread, and only while no pulses go out.
+/// BOOTSEL button. It shares the flash chip's select line, so the flash cannot be read while it is sampled: 30 µs with
+/// interrupts off. The thread samples it, and only while pulses are off.
 #[cfg(feature = "pico")]
 pub(crate) mod button {
     use embassy_rp::Peri;
@@ -32,7 +32,7 @@ pub(crate) mod button {
     use embassy_time::{Duration, Ticker};
     use portable_atomic::{AtomicBool, Ordering};
 
-    /// From look to look.
+    /// Interval between samples.
     const EVERY: Duration = Duration::from_millis(100);
 
     static PRESSED: AtomicBool = AtomicBool::new(false);
@@ -42,7 +42,7 @@ pub(crate) mod button {
         PRESSED.load(Ordering::Relaxed)
     }
 
-    /// To be called at each tick: whether no pulses go out.
+    /// Allows or forbids sampling. Called at each tick.
     pub(crate) fn may_be_looked_at(pulses_are_off: bool) {
         MAY_LOOK.store(pulses_are_off, Ordering::Relaxed);
     }
@@ -52,7 +52,7 @@ pub(crate) mod button {
         let mut ticker = Ticker::every(EVERY);
         loop {
             ticker.next().await;
-            // No tick comes between question and look.
+            // No tick can occur between this check and the sample.
             let pressed = cortex_m::interrupt::free(|_| {
                 MAY_LOOK.load(Ordering::Relaxed) && is_bootsel_pressed(button.reborrow())
             });
@@ -61,7 +61,7 @@ pub(crate) mod button {
     }
 }
 
-/// The Nano has no such button.
+/// The Nano has no BOOTSEL button.
 #[cfg(not(feature = "pico"))]
 pub(crate) mod button {
     pub(super) const fn is_pressed() -> bool {

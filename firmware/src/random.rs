@@ -1,7 +1,7 @@
-//! Numbers that no other start has, from the chip's one source of chance: the ring oscillator's random bit.
+//! Random numbers that identify a start, from the random bit of the ring oscillator.
 //!
-//! Bits read one after the other are nearly the same, because the oscillator itself takes about 150 ns a period. So they
-//! are taken far apart, many more than are needed, and hashed: what little each is worth adds up.
+//! Consecutive bits are strongly correlated, because the oscillator's period is about 150 ns. So the bits are sampled far
+//! apart, many more than needed, and hashed to accumulate their entropy.
 
 use core::hash::Hasher;
 
@@ -9,12 +9,12 @@ use embassy_rp::pac::ROSC;
 use embassy_time::{Duration, block_for};
 use siphasher::sip::SipHasher24;
 
-/// Bits that are hashed; with [`APART`] they take 6 ms of every start.
+/// Number of hashed bits; with [`APART`] they take 6 ms of every start.
 const BITS: usize = 512;
-/// From bit to bit: at least 10 µs, and up to one tick of the clock is already over when the wait begins.
+/// Interval between bits: at least 10 µs, because up to one tick of the clock may have passed before the wait.
 const APART: Duration = Duration::from_micros(11);
 
-/// 64 bits for this start. `starts` tells starts apart even where the oscillator does not.
+/// 64 random bits of this start. `starts` distinguishes starts even without entropy.
 pub(crate) fn bits_of_start(starts: u32) -> u64 {
     let mut drawn = [0; 4 + BITS / 8];
     let (count, bits) = drawn.split_at_mut(4);

@@ -1,16 +1,16 @@
-//! What outlives every reset but that of power: a section of RAM that no start-up code clears, and no reset either. After
-//! power was off it holds anything, so all in it carries its own check.
+//! RAM that survives every reset except a power cut: a section that no start-up code clears. After power-on it is random, so
+//! each record carries its own check.
 //!
-//! The watchdog's scratch registers, made for this, do not outlive the reset pin; this does.
+//! The watchdog's scratch registers, intended for this, do not survive the reset pin; this section does.
 
-// SAFETY of the sections: `.uninit` is cortex-m-rt's own for such variables, in RAM, and no initial value is asked for.
+// SAFETY of the sections: `.uninit` is the section of cortex-m-rt for such variables, in RAM and without initial values.
 #![allow(unsafe_code)]
 
 use core::mem::MaybeUninit;
 
 use gait_player::{CrashNote, ShortStarts};
 
-/// The last crash.
+/// Note of the last crash.
 #[unsafe(link_section = ".uninit.crash")]
 static mut NOTE: MaybeUninit<CrashNote> = MaybeUninit::uninit();
 
@@ -18,21 +18,21 @@ static mut NOTE: MaybeUninit<CrashNote> = MaybeUninit::uninit();
 #[unsafe(link_section = ".uninit.kept")]
 static mut KEPT: MaybeUninit<[u32; 2]> = MaybeUninit::uninit();
 
-/// [`gait_player::Output::starts`], as its record.
+/// Encoded [`gait_player::Output::starts`].
 #[unsafe(link_section = ".uninit.starts")]
 static mut STARTS: MaybeUninit<[u8; ShortStarts::LEN]> = MaybeUninit::uninit();
 
-/// Leaves a note for the next start. To be called with interrupts off, by what does not come back.
+/// Stores a note for the next start. Called with interrupts off, by code that does not return.
 pub(crate) fn leave(note: CrashNote) {
-    // SAFETY: a static's own address, and nothing else runs. Volatile, because the compiler sees nobody read it.
+    // SAFETY: the address of a static, and nothing else runs. Volatile, because no code of this run reads it.
     unsafe { (&raw mut NOTE).cast::<CrashNote>().write_volatile(note) }
 }
 
-/// Takes the note, once. To be called before any task runs.
+/// Reads and clears the note. Called before any task runs.
 pub(crate) fn take_note() -> CrashNote {
     let place = (&raw mut NOTE).cast::<CrashNote>();
-    // SAFETY: a static's own address, and any bits are a `CrashNote`; no task runs yet, and a crash does not come back.
-    // Volatile, because the compiler cannot know what a reset left there.
+    // SAFETY: the address of a static, and any bit pattern is a valid `CrashNote`. No task runs yet, and a crash does not
+    // return. Volatile, because the content comes from before the reset.
     unsafe {
         let note = place.read_volatile();
         place.write_volatile(CrashNote::NONE);
@@ -40,9 +40,9 @@ pub(crate) fn take_note() -> CrashNote {
     }
 }
 
-/// Keeps a word. To be called by the control task alone.
+/// Stores the word. Called only by the control task.
 pub(crate) fn keep(word: u32) {
-    // SAFETY: a static's own address; once the tasks run, only the control task touches it.
+    // SAFETY: the address of a static; while tasks run, only the control task accesses it.
     unsafe {
         (&raw mut KEPT)
             .cast::<[u32; 2]>()
@@ -50,14 +50,14 @@ pub(crate) fn keep(word: u32) {
     }
 }
 
-/// The word that [`keep`] kept; 0 where there is none. To be called before any task runs.
+/// Word stored by [`keep`]; 0 if it is invalid. Called before any task runs.
 pub(crate) fn kept() -> u32 {
-    // SAFETY: as in `take_note`; any bits are two words.
+    // SAFETY: as in `take_note`; any bit pattern is two words.
     let [word, complement] = unsafe { (&raw const KEPT).cast::<[u32; 2]>().read_volatile() };
     if word == !complement { word } else { 0 }
 }
 
-/// Keeps the count of short starts. To be called by the control task alone.
+/// Stores the count of short starts. Called only by the control task.
 pub(crate) fn keep_starts(starts: ShortStarts) {
     // SAFETY: as in `keep`.
     unsafe {
@@ -67,9 +67,9 @@ pub(crate) fn keep_starts(starts: ShortStarts) {
     }
 }
 
-/// The count that [`keep_starts`] kept; `None` where there is none. To be called before any task runs.
+/// Count stored by [`keep_starts`]. Returns `None` if it is invalid. Called before any task runs.
 pub(crate) fn starts() -> Option<ShortStarts> {
-    // SAFETY: as in `take_note`; any bits are bytes.
+    // SAFETY: as in `take_note`; any bit pattern is bytes.
     let record = unsafe {
         (&raw const STARTS)
             .cast::<[u8; ShortStarts::LEN]>()

@@ -1,4 +1,4 @@
-//! The guard below the stack: a region of the memory protection unit that nothing may read, write or run.
+//! Guard below the stack: a region of the memory protection unit without read, write and execute permission.
 //!
 //! The stack grows down to the first byte of the RAM. Below it the bus has no memory, but it need not fault either: the addresses
 //! belong to the flash controller's part of the map, which need not decode every bit. The guard faults whatever the bus does. It
@@ -10,9 +10,9 @@
 
 use cortex_m::peripheral::MPU;
 
-/// First byte of the stack's memory, which `memory.x` puts at the start of the RAM.
+/// First address of the stack's memory, which `memory.x` places at the start of the RAM.
 const STACK_END: u32 = 0x2000_0000;
-/// Bytes of the guard: a power of two of at least 256, to which its address is aligned.
+/// Length of the guard, bytes: a power of two of at least 256, to which its address is aligned.
 const LENGTH: u32 = 32 * 1024;
 const START: u32 = STACK_END - LENGTH;
 
@@ -26,7 +26,7 @@ const CTRL: u32 = 1 << 2 | 1;
 const _: () = assert!(LENGTH.is_power_of_two() && LENGTH >= 256 && START.is_multiple_of(LENGTH));
 const _: () = assert!(RBAR == 0x1FFF_8010 && RASR == 0x1000_001D && CTRL == 5);
 
-/// Switches the guard on. To be called once, before any task runs.
+/// Switches the guard on. Called once, before any task runs.
 pub(crate) fn start() {
     // SAFETY: a static's own address; no task runs yet and nothing else uses the MPU. The region holds nothing of ours, so no
     // access that was right before is a fault now.

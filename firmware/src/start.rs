@@ -1,4 +1,4 @@
-//! From reset to running tasks: takes the chip apart, wakes the brain, starts control above everything else.
+//! Start-up: distributes the peripherals, creates the brain and starts the tasks, control with the highest priority.
 
 use defmt::{info, unwrap};
 use defmt_rtt as _;
@@ -17,12 +17,12 @@ use crate::storage::FlashStorage;
 use crate::watchdog::Watchdog;
 use crate::{battery, boot, stack_guard, uart, usb, watchdog};
 
-/// Runs `control` from an interrupt, so that no other task can hold it up.
+/// Executor of `control` in an interrupt, so that no other task delays it.
 static ABOVE_THE_THREAD: InterruptExecutor = InterruptExecutor::new();
 
 #[interrupt]
 fn SWI_IRQ_1() {
-    // SAFETY: called from the very interrupt that the executor was started with, and from nowhere else.
+    // SAFETY: called only from the interrupt with which the executor was started.
     #[allow(unsafe_code)]
     unsafe {
         ABOVE_THE_THREAD.on_interrupt();
@@ -34,11 +34,11 @@ async fn main(spawner: Spawner) {
     stack_guard::start();
     let whole_chip = watchdog::whole_chip_was_reset();
     let board = Board::new(embassy_rp::init(embassy_rp::config::Config::default()));
-    // First of all the pins that could move something: outputs low, counter stopped.
+    // The servo pins first: outputs low, counter stopped.
     let servos = Servos::new(board.servo_slice, board.servo_front, board.servo_back);
     let mut watchdog = Watchdog::new(board.watchdog);
     watchdog.start();
-    // Its interrupt takes in what comes while the rest wakes up.
+    // Its interrupt receives bytes during the rest of the start-up.
     let link_state = uart::start(
         spawner,
         board.uart,
@@ -66,7 +66,7 @@ async fn main(spawner: Spawner) {
     #[cfg(feature = "pico")]
     spawner.spawn(unwrap!(crate::presence::button::watch(board.bootsel)));
 
-    // Priority 0, where the UART and the timer are, stays above: bytes are not lost while a tick is computed.
+    // UART and timer keep priority 0 above it: no bytes are lost while a tick is computed.
     interrupt::SWI_IRQ_1.set_priority(Priority::P1);
     ABOVE_THE_THREAD
         .start(interrupt::SWI_IRQ_1)

@@ -1,8 +1,8 @@
-//! Flash behind the brain's storage trait: two raw slots for gait tables, a `sequential-storage` map for the settings, and
-//! another for the count of short starts, which is written so often that it must not wear the settings' pages.
+//! Flash implementation of the brain's storage trait: two raw slots for gait tables, a `sequential-storage` map for the
+//! settings, and another map for the count of short starts, whose frequent writes must not wear the settings' pages.
 //!
-//! Erasing and programming stop the program (interrupts too) for as long as the flash is busy; the brain asks for it
-//! only while stopped. Addresses come from `memory.x`.
+//! Erasing and programming block the program, including interrupts, while the flash is busy; the brain requests it only while
+//! stopped. Addresses come from `memory.x`.
 
 use core::ops::Range;
 
@@ -18,16 +18,16 @@ use sequential_storage::map::{MapConfig, MapStorage};
 
 use crate::watchdog::Watchdog;
 
-/// The smaller of the boards' flash chips (the Pico's).
+/// Size of the smaller flash chip of both boards (the Pico's), bytes.
 const FLASH_SIZE: usize = 2 * 1024 * 1024;
-/// The only key of each map.
+/// Single key of each map.
 const KEY: u8 = 0;
 
 const _: () =
     assert!(SLOTS == 2 && SLOT_PAGES * PAGE <= ERASE_SIZE && PAGE == embassy_rp::flash::PAGE_SIZE);
 
-// SAFETY: nothing is called, and nothing is read behind these names. They are no variables: the linker script gives
-// each an address that is an offset into the flash chip, and only the address is taken.
+// SAFETY: these symbols are neither called nor read. The linker script assigns each an address, which is an offset into the
+// flash chip, and only the address is used.
 #[allow(unsafe_code)]
 unsafe extern "C" {
     static __gait_slot_0_start: u8;
@@ -40,21 +40,21 @@ unsafe extern "C" {
     static __starts_end: u8;
 }
 
-/// Offset into the flash chip that a linker symbol stands for.
+/// Offset into the flash chip of a linker symbol.
 fn offset(symbol: *const u8) -> u32 {
     symbol.addr() as u32
 }
 
-/// What can go wrong with the flash.
+/// Error of the flash storage.
 #[derive(Debug, defmt::Format)]
 pub(crate) enum Error {
-    /// The chip's driver refused.
+    /// Error of the chip's driver.
     Flash(FlashError),
-    /// A map could not be read or written.
+    /// Error of a map.
     Map(sequential_storage::Error<FlashError>),
-    /// There is something where the settings are, but no settings can be made of it.
+    /// The settings' area is not blank, but holds no valid settings.
     SettingsLost,
-    /// The brain asked for a slot or a page that there is not.
+    /// The slot or page does not exist.
     NoSuchPlace,
 }
 
@@ -66,7 +66,7 @@ impl From<FlashError> for Error {
 
 type Chip = Flash<'static, FLASH, Blocking, FLASH_SIZE>;
 
-/// The flash chip's part that outlives the program.
+/// Persistent part of the flash chip.
 pub(crate) struct FlashStorage {
     chip: Chip,
     slots: [Range<u32>; SLOTS],
@@ -74,7 +74,7 @@ pub(crate) struct FlashStorage {
     starts: Range<u32>,
 }
 
-/// The same in use, with the watchdog that must not fire meanwhile.
+/// Flash handle that also feeds the watchdog.
 pub(crate) struct StorageInUse<'a> {
     flash: FedFlash<'a>,
     slots: &'a [Range<u32>; SLOTS],
@@ -82,8 +82,8 @@ pub(crate) struct StorageInUse<'a> {
     starts: &'a Range<u32>,
 }
 
-/// A flash chip whose erases the watchdog bears: a sector may take nearly as long as it waits, and nothing else can feed it
-/// meanwhile. One call of the settings map may erase several, to mend what a power cut left.
+/// Flash that feeds the watchdog between erases. One sector may take nearly the watchdog's time-out, and nothing else can feed
+/// it meanwhile. One call of the settings map may erase several sectors to repair the result of a power cut.
 struct FedFlash<'a> {
     chip: &'a mut Chip,
     watchdog: &'a mut Watchdog,
@@ -97,7 +97,7 @@ impl FedFlash<'_> {
             self.watchdog.feed_for_flash();
             self.chip.blocking_erase(sector, end)?;
         }
-        // What follows has its time, too.
+        // Restarts the time-out for the next operation.
         self.watchdog.feed_for_flash();
         Ok(())
     }
@@ -147,7 +147,7 @@ impl FlashStorage {
         }
     }
 
-    /// To be used by what may feed the watchdog, while no pulses go out.
+    /// Combines flash and watchdog; used only while pulses are off.
     pub(crate) fn feeding<'a>(&'a mut self, watchdog: &'a mut Watchdog) -> StorageInUse<'a> {
         StorageInUse {
             flash: FedFlash {
@@ -166,7 +166,7 @@ impl<'b> StorageInUse<'b> {
         self.slots.get(slot).cloned().ok_or(Error::NoSuchPlace)
     }
 
-    /// Nothing was ever written where the settings are.
+    /// Returns true if the settings' area was never written.
     fn settings_are_blank(&mut self) -> Result<bool, Error> {
         let mut bytes = [0; PAGE];
         for start in self.settings.clone().step_by(PAGE) {
@@ -186,7 +186,7 @@ impl<'b> StorageInUse<'b> {
         )
     }
 
-    /// The bytes of a map's one item.
+    /// Reads the single item of a map.
     fn load(&mut self, place: Range<u32>, bytes: &mut [u8]) -> Result<Option<usize>, Error> {
         let mut buffer = [0; MAX_SETTINGS + 32];
         let found =
@@ -202,7 +202,7 @@ impl<'b> StorageInUse<'b> {
         let mut map = self.map(place);
         let mut store = |map: &mut Map<'_, '_>| block_on(map.store_item(&mut buffer, &KEY, &bytes));
         match store(&mut map) {
-            // Nothing in there can be read any more: what is new is better than nothing.
+            // The area is unreadable; new content is better than none.
             Err(sequential_storage::Error::Corrupted { .. }) => {
                 block_on(map.erase_all()).map_err(Error::Map)?;
                 store(&mut map).map_err(Error::Map)
@@ -244,7 +244,7 @@ impl Storage for StorageInUse<'_> {
 
     fn load_settings(&mut self, bytes: &mut [u8; MAX_SETTINGS]) -> Result<Option<usize>, Error> {
         let found = self.load(self.settings.clone(), bytes)?;
-        // The map reads past what it does not understand: then it has none, which is not the same as none yet.
+        // The map skips records that it cannot read. An empty result in an area that is not blank means lost settings.
         if found.is_none() && !self.settings_are_blank()? {
             return Err(Error::SettingsLost);
         }

@@ -1,4 +1,4 @@
-//! The serial link through the HC-05: interrupt-driven rings on both sides, and silence while nobody is connected.
+//! Serial link through the HC-05: interrupt-driven ring buffers, and no transmission while the HC-05 is disconnected.
 
 use defmt::unwrap;
 use embassy_executor::Spawner;
@@ -15,7 +15,7 @@ use static_cell::StaticCell;
 use crate::build_setting::number;
 use crate::line::{Line, RECEIVED};
 
-/// What the HC-05 is set to by `swimmer robot hc05`.
+/// Baud rate that `swimmer robot hc05` sets on the HC-05.
 const BAUD: u32 = match number(option_env!("SWIMMER_LINK_BAUD")) {
     Some(baud) => baud,
     None => 115_200,
@@ -24,22 +24,22 @@ const _: () = assert!(
     BAUD >= 9_600 && BAUD <= 460_800,
     "SWIMMER_LINK_BAUD must lie between 9600 and 460800"
 );
-/// The receiver's ring.
+/// Size of the receiver's ring, bytes.
 const RECEIVE_RING: usize = 1024;
-/// With the line behind it: what Hello advertises, and what the host keeps in flight at most.
+/// Total receive buffer, bytes: the value in Hello, and the most that the host keeps in flight.
 pub(crate) const RECEIVE_BUFFER: usize = RECEIVE_RING + RECEIVED;
-/// The transmitter's ring. Short, because what is in it still leaves after the connection is gone.
+/// Size of the transmitter's ring, bytes. It is short, because its content is still sent after a disconnection.
 const SEND_RING: usize = 32;
 
-/// Bytes from and to the HC-05.
+/// Buffers of the UART.
 pub(crate) static LINE: Line = Line::new();
 
 bind_interrupts!(struct Interrupts {
     UART0_IRQ => BufferedInterruptHandler<UART0>;
 });
 
-/// Starts both directions; returns the STATE pin, high while the HC-05 is connected. A board without an HC-05 ties it
-/// to 3.3 V; left open it reads low and the robot keeps silent.
+/// Starts both directions. Returns the STATE pin, high while the HC-05 is connected. A board without an HC-05 ties it to 3.3 V;
+/// an open pin reads low, and the robot does not transmit.
 pub(crate) fn start(
     spawner: Spawner,
     uart: Peri<'static, UART0>,
@@ -68,7 +68,7 @@ async fn receive(mut rx: BufferedUartRx) {
     loop {
         match rx.read(&mut bytes).await {
             Ok(count) => LINE.received.write_all(&bytes[..count]).await,
-            // The frames' checksums find what is missing.
+            // The frames' checksums detect the missing bytes.
             Err(error) => defmt::debug!("UART: {}", error),
         }
     }
@@ -79,7 +79,7 @@ async fn send(mut tx: BufferedUartTx, state: &'static Input<'static>) {
     let mut bytes = [0; SEND_RING];
     loop {
         let count = LINE.to_send.read(&mut bytes).await;
-        // While nobody is connected the HC-05 takes bytes for AT commands: they are dropped.
+        // A disconnected HC-05 would interpret bytes as AT commands, so they are dropped.
         if state.is_high()
             && let Err(error) = tx.write_all(&bytes[..count]).await
         {

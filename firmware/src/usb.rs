@@ -1,5 +1,5 @@
-//! The USB cable: the frames of the serial link over a port of class CDC-ACM, which every system has a driver for. It runs in
-//! the thread, below control, as the UART's tasks do; what came over which of the two is the brain's to judge.
+//! USB cable: frames of the serial link over a CDC-ACM port, for which every system has a driver. It runs in the thread, below
+//! control, like the UART's tasks. The brain distinguishes the two transports.
 
 use defmt::unwrap;
 use embassy_executor::Spawner;
@@ -15,18 +15,18 @@ use static_cell::StaticCell;
 
 use crate::line::Line;
 
-/// The test product of pid.codes: free to use on one's own bench, not to be sold. A robot that is given away needs a number of
-/// its own, which pid.codes gives to open designs.
+/// Test product of pid.codes: free for private use, not for sale. A robot for others needs its own number, which pid.codes
+/// assigns to open designs.
 const VENDOR: u16 = 0x1209;
 const PRODUCT: u16 = 0x0001;
-/// The largest packet of a bulk endpoint at full speed.
+/// Largest packet of a bulk endpoint at full speed, bytes.
 const PACKET: usize = 64;
-/// The largest that is sent: after a full one a host waits for more before it hands anything on.
+/// Largest sent packet, bytes: after a full packet a host waits for more before it delivers the data.
 const SENT: usize = PACKET - 1;
 
-/// Bytes from and to the computer at the cable.
+/// Buffers of the USB port.
 pub(crate) static LINE: Line = Line::new();
-/// A computer has set the device up and its bus is awake.
+/// A computer has configured the device, and its bus is awake.
 static UP: AtomicBool = AtomicBool::new(false);
 
 bind_interrupts!(struct Interrupts {
@@ -35,7 +35,7 @@ bind_interrupts!(struct Interrupts {
 
 type Bus = Driver<'static, USB>;
 
-/// Whether a computer is at the other end.
+/// Returns true if a computer is connected.
 pub(crate) fn is_up() -> bool {
     UP.load(Ordering::Relaxed)
 }
@@ -62,14 +62,14 @@ pub(crate) fn start(spawner: Spawner, usb: Peri<'static, USB>) {
     builder.handler(WATCH.init(Watch));
     let port = CdcAcmClass::new(&mut builder, STATE.init(State::new()), PACKET as u16);
     let (sender, receiver) = port.split();
-    // Below control: a packet can wait for a tick, a tick for no packet.
+    // Below control: a packet can wait for a tick, but no tick for a packet.
     interrupt::USBCTRL_IRQ.set_priority(Priority::P2);
     spawner.spawn(unwrap!(run(builder.build())));
     spawner.spawn(unwrap!(receive(receiver)));
     spawner.spawn(unwrap!(send(sender)));
 }
 
-/// Hears of what the bus does.
+/// Handler of bus events.
 struct Watch;
 
 impl Handler for Watch {
@@ -81,7 +81,7 @@ impl Handler for Watch {
         UP.store(configured, Ordering::Relaxed);
     }
 
-    /// A cable that was pulled shows so, where the board has power from elsewhere.
+    /// A pulled cable suspends the bus if the board has another supply.
     fn suspended(&mut self, suspended: bool) {
         UP.store(!suspended, Ordering::Relaxed);
     }
@@ -98,7 +98,7 @@ async fn receive(mut port: Receiver<'static, Bus>) {
     loop {
         port.wait_connection().await;
         while let Ok(count) = port.read_packet(&mut packet).await {
-            // Where the brain is behind, the bus waits: nothing is lost here.
+            // If the brain is slow, the bus waits, so nothing is lost here.
             LINE.received.write_all(&packet[..count]).await;
         }
     }

@@ -1,8 +1,7 @@
-//! The watchdog: what stops the servos when the CPU hangs, because the PWM slice would keep pulsing without it.
+//! Watchdog: stops the servos if the CPU hangs, because the PWM slice alone would continue to pulse.
 //!
-//! Only the control task feeds it, after a tick has gone through, and only while the thread executor beats: a UART task
-//! that hangs resets the robot just as a hung control task does. It is fed for each sector of flash that is erased, too: no
-//! pulses go out then.
+//! Only the control task feeds it, after a finished tick, and only while the thread executor beats: a hung UART task resets the
+//! robot like a hung control task. It is also fed for each erased flash sector, while pulses are off.
 
 use embassy_rp::Peri;
 use embassy_rp::pac::RESETS;
@@ -11,30 +10,30 @@ use embassy_rp::watchdog::{ResetReason, Watchdog as Peripheral};
 use embassy_time::{Duration, Ticker};
 use portable_atomic::{AtomicBool, Ordering};
 
-/// From the last feed to the reset. Above the 400 ms that a slow flash chip may take to erase a sector, during which
-/// nothing can feed; with [`PATIENCE`] below the promised 0.5 s.
+/// Time-out. It exceeds the 400 ms that a slow flash chip may take to erase a sector, during which nothing can feed it. With
+/// [`PATIENCE`] it is below the promised 0.5 s.
 const TIMEOUT: Duration = Duration::from_millis(430);
-/// Ticks in a row without a beat that are forgiven: 40 ms.
+/// Number of consecutive ticks without a beat that are tolerated: 40 ms.
 const PATIENCE: u8 = 2;
-/// The scratch registers we use. The boot ROM has 4 to 7, and writes 0 and 1 where a program asks it to take a new program
-/// over USB. They outlive every reset but those of power and reset pin (`retained_ram.rs` has what must outlive the pin too).
+/// Scratch registers of this firmware. The boot ROM uses 4 to 7, and writes 0 and 1 if a program requests new firmware over
+/// USB. They survive every reset except power-on and reset pin (`retained_ram.rs` has the state that must survive the pin too).
 const KEPT: usize = 0;
 const STARTS: usize = 1;
 const ARMED: usize = 2;
-/// In [`ARMED`] from when our start armed the watchdog: what the others hold is ours, and a reset by the watchdog is one of
-/// ours. The boot ROM resets by the watchdog too, once it has written the flash.
+/// Value in [`ARMED`] after our start-up has armed the watchdog. It shows that the other registers are ours, and that a
+/// watchdog reset is ours too: the boot ROM also resets by the watchdog after it has written the flash.
 const BY_US: u32 = u32::from_le_bytes(*b"swim");
 
 static BEATEN: AtomicBool = AtomicBool::new(false);
 
-/// Whether the start was one of the whole chip, which holds every peripheral in reset; a debugger resets the core alone, and
-/// then the watchdog tells a reason from long ago. To be asked before `embassy_rp::init`, which resets the peripherals; the
-/// boot ROM leaves the PWM alone.
+/// Returns true if the whole chip was reset, including every peripheral. A debugger resets only the core, and then the watchdog
+/// reports an outdated reason. Must be called before `embassy_rp::init`, which resets the peripherals; the boot ROM does not
+/// touch the PWM.
 pub(crate) fn whole_chip_was_reset() -> bool {
     RESETS.reset().read().pwm()
 }
 
-/// The chip's watchdog and its scratch registers.
+/// Watchdog of the chip, with its scratch registers.
 pub(crate) struct Watchdog {
     peripheral: Peripheral,
     armed_by_us: bool,
@@ -46,7 +45,7 @@ impl Watchdog {
         let mut peripheral = Peripheral::new(peripheral);
         let armed_by_us = peripheral.get_scratch(ARMED) == BY_US;
         if !armed_by_us {
-            // What others left there is no word of ours.
+            // A value that other software left is not our word.
             peripheral.set_scratch(KEPT, 0);
             peripheral.set_scratch(STARTS, 0);
         }
@@ -57,24 +56,24 @@ impl Watchdog {
         }
     }
 
-    /// How the watchdog last reset the chip, whoever wanted it to: `None` after power or the reset pin.
+    /// Type of the last watchdog reset, whoever caused it. Returns `None` after power-on or the reset pin.
     pub(crate) fn reset_reason(&self) -> Option<ResetReason> {
         self.peripheral.reset_reason()
     }
 
-    /// Whether it was a start of this firmware that had armed it for that.
+    /// Returns true if this firmware had armed the watchdog.
     pub(crate) fn was_armed_by_us(&self) -> bool {
         self.armed_by_us
     }
 
     pub(crate) fn start(&mut self) {
         self.peripheral.set_scratch(ARMED, BY_US);
-        // Out of reset its timer stands still while a debugger halts a core, and the PWM slice would keep pulsing.
+        // By default its timer stops while a debugger halts a core, and the PWM slice would continue to pulse.
         self.peripheral.pause_on_debug(false);
         self.peripheral.start(TIMEOUT);
     }
 
-    /// Called by the control task once a tick has gone through.
+    /// Feeds the watchdog; called by the control task after each tick.
     pub(crate) fn feed(&mut self) {
         self.missed_beats = if BEATEN.swap(false, Ordering::Relaxed) {
             0
@@ -86,17 +85,17 @@ impl Watchdog {
         }
     }
 
-    /// The chip is the boot ROM's from here on: what it resets it by is none of our faults.
+    /// Passes control to the boot ROM: later watchdog resets are not our faults.
     pub(crate) fn hand_over(&mut self) {
         self.peripheral.set_scratch(ARMED, 0);
     }
 
-    /// Feeds it around the erase of a sector of flash, while no pulses go out.
+    /// Feeds the watchdog around the erase of a flash sector, while pulses are off.
     pub(crate) fn feed_for_flash(&mut self) {
         self.peripheral.feed(TIMEOUT);
     }
 
-    /// The word that [`Self::keep`] kept over the reset; anything after power was off.
+    /// Word that [`Self::keep`] stored before the reset; undefined after power-on.
     pub(crate) fn kept(&mut self) -> u32 {
         self.peripheral.get_scratch(KEPT)
     }
@@ -105,7 +104,7 @@ impl Watchdog {
         self.peripheral.set_scratch(KEPT, word);
     }
 
-    /// Counts this start; the number since power came on.
+    /// Counts this start. Returns the number of starts since power-on.
     pub(crate) fn count_start(&mut self) -> u32 {
         let starts = self.peripheral.get_scratch(STARTS).wrapping_add(1);
         self.peripheral.set_scratch(STARTS, starts);
@@ -113,7 +112,7 @@ impl Watchdog {
     }
 }
 
-/// The thread executor's proof of life, twice a tick.
+/// Liveness signal of the thread executor, twice per tick.
 #[embassy_executor::task]
 pub(crate) async fn beat() {
     let mut ticker = Ticker::every(Duration::from_millis(10));
