@@ -1,6 +1,6 @@
-//! The cameras over the tank: two reflectors on the middle link and two ghosts, with the faults of real recordings.
+//! Cameras over the tank: two reflectors on the middle link and two ghosts, with the faults of real recordings.
 //!
-//! Motive's axes: Y points up, and the floor's (x, y), seen from above, is (Z, X).
+//! Axes of Motive: Y points up, and the tank's (x, y), seen from above, is (Z, X).
 
 mod motive;
 
@@ -11,32 +11,32 @@ use swimmer_model::Pose;
 
 pub use motive::{MotiveFile, TrackError};
 
-/// Frames that a burst of drop-outs lasts at most.
+/// Longest burst of drop-outs, frames.
 const LONGEST_BURST: u32 = 12;
-/// Ghosts appear within this of the robot, m.
+/// Largest distance of ghosts from the robot, m.
 const GHOST_RANGE: f64 = 0.4;
-/// Chance per frame that an absent ghost appears, and that a present one vanishes.
+/// Probability per frame that an absent ghost appears, and that a present one vanishes.
 const GHOST_CHANCES: (f64, f64) = (0.004, 0.02);
 
-/// What the cameras are like.
+/// Parameters of the cameras.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CameraConfig {
     /// Standard deviation of each coordinate, m.
     pub noise_sd: f64,
-    /// Chance that a reflector is missing in one frame.
+    /// Probability that a reflector is missing in one frame.
     pub single_dropout: f64,
-    /// Chance per frame that a reflector is lost for 2 to 12 frames.
+    /// Probability per frame that a reflector is lost for 2 to 12 frames.
     pub burst_dropout: f64,
-    /// Height of the reflectors above the floor, m.
+    /// Height of the reflectors above the bottom, m.
     pub height: f64,
     /// Name of the take.
     pub take: String,
-    /// When it was taken, as Motive writes it. A fixed text: the same run gives the same bytes.
+    /// Capture time in Motive's format. It is a fixed text, so that equal runs give equal bytes.
     pub capture_start: String,
 }
 
 impl Default for CameraConfig {
-    /// Good cameras: 0.3 mm, a reflector missing in about 0.5 % of the frames.
+    /// Good cameras: noise of 0.3 mm, a reflector missing in about 0.5 % of the frames.
     fn default() -> Self {
         Self {
             noise_sd: 3e-4,
@@ -50,7 +50,7 @@ impl Default for CameraConfig {
 }
 
 impl CameraConfig {
-    /// Cameras without noise, drop-outs or anything else to forgive; the ghosts stay.
+    /// Cameras without noise and drop-outs; the ghosts stay.
     pub fn perfect() -> Self {
         Self {
             noise_sd: 0.0,
@@ -61,13 +61,13 @@ impl CameraConfig {
     }
 }
 
-/// A point in Motive's axes (X, Y up, Z), m; `None` where it was not seen.
+/// Point in Motive's axes (X, Y up, Z), m; `None` if it is missing.
 pub type Point = Option<[f64; 3]>;
 
-/// One frame: front reflector, back reflector, two ghosts.
+/// Frame: front reflector, back reflector, two ghosts.
 pub type Frame = [Point; 4];
 
-/// The cameras' state of one recording.
+/// State of the cameras during one recording.
 ///
 /// ```
 /// use swimmer_model::Pose;
@@ -85,17 +85,17 @@ pub struct Camera {
     noise: ChaCha8Rng,
     gaps: ChaCha8Rng,
     ghosts_rng: ChaCha8Rng,
-    /// Frames for which each reflector stays lost.
+    /// Remaining frames for which each reflector is lost.
     lost: [u32; 2],
     ghosts: [Point; 2],
 }
 
 impl Camera {
-    /// Frames per second.
+    /// Frame rate, Hz.
     pub const RATE_HZ: u32 = 100;
 
-    /// Cameras for reflectors at ±`reach` \[m\] on the middle link. Each recording of a twin has its own number, so that no
-    /// two share their noise.
+    /// Returns cameras for reflectors at ±`reach` \[m\] on the middle link. The number of the recording selects the noise, so
+    /// that no two recordings share it.
     pub fn new(config: CameraConfig, reach: f64, seed: u64, recording: u64) -> Self {
         let stream = |number: u64| {
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
@@ -113,7 +113,7 @@ impl Camera {
         }
     }
 
-    /// Takes one frame of a robot at `pose` (tank's frame).
+    /// Records one frame of a robot at `pose` (tank's frame).
     pub fn expose(&mut self, pose: &Pose<f64>) -> Frame {
         let reflectors = [self.reach, -self.reach].map(|along| {
             let (sin, cos) = pose.theta.sin_cos();
@@ -123,7 +123,7 @@ impl Camera {
         for (place, (reflector, lost)) in
             frame.iter_mut().zip(reflectors.iter().zip(&mut self.lost))
         {
-            // The same draws in every frame: a fault more does not shift the later ones.
+            // Every frame draws the same number of random values, so that one more fault does not change the later ones.
             let (single, burst): (f64, f64) = (self.gaps.random(), self.gaps.random());
             let length = self.gaps.random_range(2..=LONGEST_BURST);
             if *lost == 0 && burst < self.config.burst_dropout {
@@ -144,7 +144,7 @@ impl Camera {
         frame
     }
 
-    /// Ghosts come, stay where they are but for the noise, and go.
+    /// Updates the ghosts: they appear, stay in place except for the noise, and vanish.
     fn haunt(&mut self, pose: &Pose<f64>) {
         let (appear, vanish) = GHOST_CHANCES;
         for ghost in &mut self.ghosts {
@@ -212,7 +212,7 @@ mod tests {
                 *missing += u32::from(point.is_none());
             }
         }
-        // 0.2 % single and 0.05 % bursts of 7 on average: 0.55 %, five standard deviations either way.
+        // 0.2 % single and 0.05 % bursts of 7 on average: 0.55 %, within five standard deviations.
         for missing in missing {
             assert!((4600..6400).contains(&missing), "{missing}");
         }

@@ -1,4 +1,4 @@
-//! What a twin is: the truth that only the tank knows, and what its brain believes at first.
+//! Configuration of a twin: the true parameters of the tank, and the initial settings of its brain.
 
 use gait_player::servo::ServoMap;
 use gait_player::servo::plant::PlantParameters;
@@ -12,51 +12,52 @@ use swimmer_model::{Scalar, Swimmer, TangentialDrag};
 
 use crate::camera::CameraConfig;
 
-/// Pulses outside are never sent by any servo of this kind, µs: beyond, a sail winch may spin on.
+/// Range of pulses for servos of this kind, µs: beyond it a sail winch may spin on.
 const PULSE_WINDOW_US: (f64, f64) = (600.0, 2400.0);
 /// Angle by which the pulse window exceeds the largest angle, for the trim, rad.
 const TRIM_ROOM: f64 = 0.4;
 
-/// Everything a twin is made of.
+/// Parameters of a twin.
 #[derive(Debug, Clone)]
 pub struct TwinConfig {
-    /// The swimmer that swims in the tank.
+    /// Swimmer in the tank.
     pub swimmer: Swimmer<f64>,
-    /// Its servos' shafts.
+    /// Dynamics of the servos.
     pub plant: PlantParameters,
-    /// The limits of its firmware.
+    /// Limits of the firmware.
     pub limits: Limits,
-    /// What the brain believes of swimmer and limits until it is configured.
+    /// Swimmer and limits that the brain assumes until it is configured.
     pub belief: Configuration,
-    /// The servos' maps in the brain, until others are set.
+    /// Servo maps of the brain, until others are set.
     pub servos: [ServoSettings; 2],
-    /// The same in truth: what a pulse turns them to. A robot that nobody has set up yet does not know.
+    /// True servo maps, from pulse to shaft angle. A robot that has not been set up yet does not know them.
     pub shafts: [ServoMap; 2],
-    /// Its battery, mV; the limits' own is 4400.
+    /// Battery voltage, mV; the low-battery limit is 4400.
     pub battery_mv: u16,
-    /// The cameras over the tank.
+    /// Cameras over the tank.
     pub camera: CameraConfig,
-    /// Its non-volatile memory.
+    /// Non-volatile memory.
     pub flash: MemoryStorage,
-    /// What its port is to it. Whoever runs a twin sits beside it: USB, until it is to play a robot across the room.
+    /// Transport that the port represents. The user of a twin is at the robot (USB), unless the twin simulates a robot over
+    /// radio.
     pub transport: Transport,
-    /// How it came up.
+    /// Cause of the start.
     pub reset_reason: ResetReason,
-    /// Where noise, starting pose and the boot nonce come from.
+    /// Seed of noise, starting pose and boot nonce.
     pub seed: u64,
 }
 
 impl TwinConfig {
-    /// A twin of the swimmer of a file, with the servos of its `[servo]` table or, without one, those of
+    /// Configuration for the swimmer of a file, with the servos of its `[servo]` table or, without one, those of
     /// [`ServoFile::default`].
     ///
-    /// The brain is configured for that swimmer, as a robot is that its laboratory has set up: a gait made for the file can be
-    /// uploaded at once. Who plays a laboratory that does not know the drag yet configures it otherwise, over the link.
+    /// The brain is configured for that swimmer, like a robot that its laboratory has set up: a gait for the file can be
+    /// uploaded at once. To simulate unknown drag, configure it otherwise over the link.
     pub fn new(file: &SwimmerFile, seed: u64) -> Self {
         Self::from_parts(file.swimmer, &file.servo.unwrap_or_default(), seed)
     }
 
-    /// A twin of any swimmer with any servos.
+    /// Configuration for any swimmer with any servos.
     pub fn from_parts(swimmer: Swimmer<f64>, servo: &ServoFile, seed: u64) -> Self {
         let away = (servo.max_angle + TRIM_ROOM) / servo.slope_rad_per_us;
         let (low, high) = PULSE_WINDOW_US;
@@ -95,19 +96,19 @@ impl TwinConfig {
         }
     }
 
-    /// Servos that are where they are told to be.
+    /// Replaces the servos by ideal ones, whose angles equal the commands.
     #[must_use]
     pub fn with_ideal_servos(mut self) -> Self {
         self.plant = PlantParameters::IDEAL;
         self
     }
 
-    /// Returns true if the robot's port counts as a radio, so that whoever speaks there need not be at the robot.
+    /// Returns true if the port represents a radio, so that a sender need not be at the robot.
     pub fn is_by_radio(&self) -> bool {
         self.transport == Transport::Uart
     }
 
-    /// The brain of such a robot, before it has loaded its flash.
+    /// Brain of this robot, before it has loaded its flash.
     pub(crate) fn brain(&self) -> Brain {
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
         rng.set_stream(1);
@@ -133,7 +134,7 @@ impl TwinConfig {
     }
 }
 
-/// The configuration message for a swimmer with the limits of its servos.
+/// Configuration message for a swimmer with the limits of its servos.
 ///
 /// ```
 /// use swimmer_files::{ServoFile, SwimmerFile};
@@ -165,7 +166,7 @@ pub fn configuration(swimmer: &Swimmer<f64>, servo: &ServoFile) -> Configuration
     }
 }
 
-/// Whether a robot's configuration is this swimmer's body, to the wire's precision; its limits do not matter.
+/// Returns true if a robot's configuration matches this swimmer's body, to the wire's precision; limits are ignored.
 ///
 /// ```
 /// use swimmer_files::{ServoFile, SwimmerFile};
@@ -188,7 +189,7 @@ fn single(value: f64) -> f32 {
     <f32 as Scalar>::from_f64(value)
 }
 
-/// Whole nanoseconds of microseconds inside the pulse window, which fit.
+/// Converts µs inside the pulse window to whole ns.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 fn nanoseconds(us: f64) -> u32 {
     (us * 1000.0).round() as u32

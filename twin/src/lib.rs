@@ -1,8 +1,8 @@
-//! A robot without a robot: the very `gait-player` brain that runs on the chip, behind a port; servos with a rate limit and
-//! a dead band; a virtual tank in which it swims by `swimmer-model`; virtual cameras that write tracking files.
+//! Digital twin of the robot: the `gait-player` brain that runs on the chip, behind a port; servos with rate limit and dead
+//! band; a virtual tank that moves the swimmer by `swimmer-model`; and virtual cameras that write tracking files.
 //!
-//! Time is an argument: [`Twin::advance`]. Over a [`TwinPort`] reading advances it, so a play of an hour takes a second and
-//! the same seed gives the same bytes; [`serve`] feeds the real clock to any [`VirtualRobot`] behind a pseudo-terminal or TCP.
+//! Time is an argument: [`Twin::advance`]. Reading a [`TwinPort`] advances it, so a play of an hour takes a second, and equal
+//! seeds give equal bytes. [`serve`] runs any [`VirtualRobot`] in real time behind a pseudo-terminal or TCP.
 //!
 //! ```text
 //!  bytes ─► Brain ─► pulses ─► Servos ─► joint angles ─► Tank ─► pose ─► Camera ─► tracking file
@@ -57,5 +57,5 @@ pub use twin::Twin;
 pub use virtual_robot::VirtualRobot;
 pub use world::{CycleStart, Recording, World};
 
-/// The host's end of a serial line to a twin, in virtual time.
+/// Host end of a serial line to a twin, in virtual time.
 pub type TwinPort = VirtualPort<Twin>;

@@ -1,15 +1,15 @@
-//! Replay of a link log: a fresh brain gets the frames that the host sent, at the robot's times, and its telemetry is compared
-//! with the robot's. Equal set-points and pulses show that nothing but the frames and the clock decided them.
+//! Replay of a link log: a new brain receives the host's frames at the robot's times, and its telemetry is compared with the
+//! robot's. Equal set-points and pulses show that they depend only on the frames and the clock.
 //!
-//! A log has the time at which a frame left the host, not the tick in which the robot read it. The robot's own counts of frames
-//! bound that tick (`arrival`). For frames that move the robot (arm, play, pause, stop, commit, …) and for the keep-alive
-//! before a lost link, each tick of these bounds is tried with a clone of the brain, and the one that fits the telemetry until
-//! the next such frame is kept. Every other frame (keep-alives, chunks, queries) is read within its bounds.
+//! A log has the time at which a frame left the host, not the tick in which the robot read it. The robot's counts of frames
+//! bound that tick (`arrival`). Some frames move the robot (arm, play, pause, stop, commit, …), or decide the end of the lease
+//! (the last keep-alive). For these, a clone of the brain tries each tick within the bounds, and the tick that fits the
+//! telemetry until the next such frame is used. Every other frame (keep-alives, chunks, queries) is read within its bounds.
 //!
-//! If the brain differs, and the log does not show when frames came shortly before, or holds too little to compare, the verdict
+//! If the brain differs, and the log does not show when the preceding frames arrived, or has too little to compare, the verdict
 //! is [`Verdict::Undecided`].
 //!
-//! A signed log needs no key: the fresh brain has none, and reads past the signatures of what the robot let in.
+//! A signed log needs no key: the new brain has none, and skips the signatures of accepted frames.
 
 mod arrival;
 mod events;
@@ -27,18 +27,18 @@ use swimmer_files::LinkFrame;
 
 use events::{Events, Moving, Placing};
 
-/// Why a log cannot be lived again.
+/// Reason why a log cannot be replayed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ReplayError {
-    /// There is no session in it.
+    /// The log contains no session.
     #[error(
         "the log holds no greeting that was answered, so no session to replay; record with --log from the start of a command"
     )]
     NoGreeting,
-    /// The robot told nothing.
+    /// The log contains no telemetry.
     #[error("the log holds no telemetry to compare with; record for longer than a second")]
     NoTelemetry,
-    /// The two clocks were never tied.
+    /// The relation of the two clocks is unknown.
     #[error(
         "the log holds no ping that came back, so the robot's clock is not known; record for longer than a second"
     )]
@@ -48,12 +48,12 @@ pub enum ReplayError {
         "the robot turned the log's host away: it has a key that this host did not sign with, so nothing moved it and there is nothing to replay; record with --key FILE"
     )]
     TurnedAway,
-    /// The robot was moving before the log began.
+    /// The robot was moving when the log began.
     #[error(
         "the log begins while the robot is {0:?}; only a log that begins at rest at neutral can be replayed"
     )]
     NotAtRest(StateName),
-    /// Telemetry over more than a day.
+    /// The telemetry spans more than a day.
     #[error(
         "the log's telemetry spans more than 24 hours of the robot's clock; replay takes logs of a day at most, so record each session into a log of its own"
     )]
@@ -64,7 +64,7 @@ pub enum ReplayError {
         *robot_us as f64 / 1e6
     )]
     Gap {
-        /// Robot time of the last telemetry before the gap.
+        /// Robot time of the last telemetry before the gap, µs.
         robot_us: u64,
     },
 }
@@ -72,46 +72,46 @@ pub enum ReplayError {
 /// Result of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
-    /// Every piece of telemetry is the same.
+    /// All telemetry is equal.
     Same,
-    /// The brain does something else than the robot did.
+    /// The brain behaves differently from the robot.
     Differs,
-    /// The log does not show enough to tell.
+    /// The log does not contain enough to decide.
     Undecided(Reason),
 }
 
-/// Why a comparison decides nothing.
+/// Reason why a comparison is undecided.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reason {
-    /// No piece of telemetry could be compared.
+    /// No telemetry could be compared.
     NothingCompared,
     /// The robot held a gait that the log does not upload; its CRC.
     MissingTable(u32),
-    /// A play names settings that the log does not hold; their hash.
+    /// A play refers to settings that the log does not contain; their hash.
     OtherSettings(u32),
-    /// Shortly before the first difference frames were lost, so that the log does not show which of them came, and when.
+    /// Frames were lost shortly before the first difference, so their arrival is unknown.
     LostFrames,
     /// More ticks fit the log than were tried.
     TooManyTicks,
 }
 
-/// Comparison of a log and the brain.
+/// Comparison of a log with the brain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Replayed {
-    /// Pieces of telemetry that were compared.
+    /// Number of compared telemetry frames.
     pub compared: usize,
-    /// Those of them in which state, set-point or pulses differ.
+    /// Number of those that differ in state, set-point or pulses.
     pub different: usize,
     /// Requests that moved the robot.
     pub requests: usize,
-    /// The first difference.
+    /// First difference.
     pub first: Option<Difference>,
-    /// Robot time from the first to the last comparison \[s\].
+    /// Robot time from the first to the last comparison, s.
     pub seconds: f64,
-    /// CRC of the table that the robot held at the start and the replay did not: name it, or expect a refusal.
+    /// CRC of the table that the robot held at the start and the replay did not; pass that table, or expect a refusal.
     pub missing_table: Option<u32>,
-    /// Hash of the settings that a play of the log names, if the replay has others: the log does not hold all that the robot
-    /// was set to.
+    /// Hash of the settings that a play of the log refers to, if the replay has others: the log does not contain all settings
+    /// of the robot.
     pub other_settings: Option<u32>,
     /// The robot restarted later in the log; the comparison ends there.
     pub restarted: bool,
@@ -119,31 +119,31 @@ pub struct Replayed {
     pub verdict: Verdict,
 }
 
-/// What the robot told and what the brain does at the same tick.
+/// Telemetry of robot and brain at the same tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Difference {
-    /// The robot's.
+    /// Telemetry of the robot.
     pub logged: Telemetry,
-    /// The brain's; `None`: it told nothing then.
+    /// Telemetry of the brain; `None` if it sent none.
     pub replayed: Option<Telemetry>,
 }
 
-/// What was granted then is granted again: over the cable nothing asks for more.
+/// Transport of the replay: over USB every request that the robot granted is granted again.
 const VIA: Transport = Transport::Usb;
-/// Ticks that are lived before the log begins.
+/// Number of simulated ticks before the log begins.
 const BEFORE: u64 = 10;
-/// Ticks before and after the bracket of a request in which it may have been read too.
+/// Extra ticks on both sides of the window in which a request may have been read.
 const SLACK: u64 = 1;
-/// Ticks of telemetry that decide between two ticks in which a request may have been read.
+/// Ticks of telemetry that decide between two candidate ticks.
 const HORIZON: u64 = 150;
-/// Most ticks that are tried for one request.
+/// Most candidate ticks for one request.
 const MOST_TRIED: u64 = 100;
-/// Most ticks that are computed for trials: less than a minute of one core.
+/// Most simulated ticks for trials: less than a minute of one core.
 const MOST_WORK: u64 = 10_000_000;
-/// Ticks before a difference in which a frame of unknown arrival may be its reason: the lease, and the work on a request.
+/// Ticks before a difference in which a frame of unknown arrival may be its cause: the lease, and the work on a request.
 const BEARING: u64 = 100;
 
-/// Replays a log. `table` is the gait that the robot held at the start, if the log does not upload it.
+/// Replays a log. `table` is the robot's gait at the start, if the log does not upload it.
 ///
 /// # Errors
 /// [`ReplayError`].
@@ -159,7 +159,7 @@ pub fn replay(frames: &[LinkFrame], table: Option<&GaitTable>) -> Result<Replaye
         .table_at_start
         .filter(|crc32| table.is_none_or(|table| crc32c(table.bytes()) != *crc32));
     let mut search = Search { left: MOST_WORK };
-    // The lease ends with the keep-alive that was read last: within two ticks the log does not show when that was.
+    // The last keep-alive determines the end of the lease, but the log shows its tick only within two ticks.
     let mut best: Option<Attempt> = None;
     for placing in [Placing::AsSent, Placing::Early, Placing::Late] {
         let attempt = attempt(&events, table, placing, &mut search);
@@ -227,16 +227,16 @@ fn verdict(
     }
 }
 
-/// Ticks that trials may still take.
+/// Remaining budget of trial ticks.
 struct Search {
     left: u64,
 }
 
-/// A whole run of the brain.
+/// Complete run of the brain.
 #[derive(Clone, Copy, Default)]
 struct Attempt {
     count: Count,
-    /// The first tick at which not every tick was tried that fits the log.
+    /// First tick at which some fitting candidates were not tried.
     cut_short: Option<u64>,
     /// As [`Replayed::other_settings`].
     other_settings: Option<u32>,
@@ -274,28 +274,28 @@ struct Count {
     first_tick: Option<u64>,
 }
 
-/// A brain between two ticks.
+/// Brain between two ticks.
 #[derive(Clone)]
 struct Life {
     brain: Brain,
     flash: MemoryStorage,
     decoder: Decoder,
-    /// The robot's clock a period before tick 0, µs.
+    /// Robot time one period before tick 0, µs.
     origin_us: u64,
-    /// The next tick to be lived.
+    /// Next tick to simulate.
     tick: u64,
-    /// The next of the log's still frames.
+    /// Index of the next still frame.
     still: usize,
     placing: Placing,
-    /// The brain has told something.
+    /// The brain has sent telemetry.
     greeted: bool,
     battery_mv: Option<u16>,
-    /// Hash of the settings that a play named, and that this brain does not have.
+    /// Hash of the settings that a play refers to and this brain does not have.
     other_settings: Option<u32>,
 }
 
 impl Life {
-    /// A robot just switched on as the log found it.
+    /// Returns a robot after power-on in the state at the start of the log.
     fn new(events: &Events, table: Option<&GaitTable>, placing: Placing) -> Self {
         let mut flash = table.map_or_else(MemoryStorage::erased, |table| stored(table, events));
         let mut brain = brain(events, events.hello.session);
@@ -318,7 +318,7 @@ impl Life {
         life
     }
 
-    /// Takes bytes in the middle between two ticks.
+    /// Receives bytes midway between two ticks.
     fn receive(&mut self, bytes: &[u8]) {
         let now = time_of(self.tick) - u64::from(TICK_US) / 2;
         let bytes = on_this_clock(bytes, now, self.origin_us);
@@ -326,8 +326,8 @@ impl Life {
         self.brain.receive(now, VIA, &bytes);
     }
 
-    /// A play names the settings of the robot. If this brain has others, it plays with its own, and that is reported. A clear of
-    /// e-stops names how many the robot had, of which the log may not hold all.
+    /// Replaces values in a frame that depend on the robot's history. A play with other settings than this brain's uses the
+    /// brain's, and the difference is reported. A clear of e-stops uses this brain's count, because the log may lack some.
     fn as_held_here(&mut self, bytes: Vec<u8>) -> Vec<u8> {
         let mut decoder = Decoder::new();
         let Some(mut received) = bytes.iter().find_map(|&byte| decoder.push(byte)) else {
@@ -355,7 +355,7 @@ impl Life {
         frame(received.header.session, received.header.sequence, &message)
     }
 
-    /// Lives until a request is read just before a tick. A line keeps the order: what was sent before is read before.
+    /// Runs until a request is read just before a tick. The line preserves the order: earlier frames are read first.
     fn act(&mut self, events: &Events, moving: &Moving, tick: u64, count: &mut Count) {
         self.run(events, tick, moving.order, count);
         self.hear(events, u64::MAX, moving.order);
@@ -373,7 +373,7 @@ impl Life {
         }
     }
 
-    /// Lives until just before a tick, and compares on the way.
+    /// Runs until just before a tick, and compares telemetry.
     fn run(&mut self, events: &Events, until: u64, before: usize, count: &mut Count) {
         while self.tick < until {
             self.hear(events, self.tick, before);
@@ -382,7 +382,7 @@ impl Life {
                 continue;
             };
             self.battery_mv = logged.battery_mv;
-            // The greeting may be read here a tick later than it was: until then nobody is told anything.
+            // The greeting may be read a tick later here than by the robot; until then no telemetry is sent.
             self.greeted |= told.is_some();
             if !self.greeted {
                 continue;
@@ -399,7 +399,7 @@ impl Life {
         }
     }
 
-    /// One tick; what the brain tells in it.
+    /// Runs one tick; returns its telemetry.
     fn live(&mut self) -> Option<Telemetry> {
         let now = time_of(self.tick);
         let inputs = Inputs {
@@ -429,7 +429,7 @@ impl Life {
         }
     }
 
-    /// The tick before which a frame was read: of those that the log allows, the one that fits the telemetry afterwards.
+    /// Finds the tick before which a frame was read: the tick within its window that best fits the later telemetry.
     fn choose(
         &mut self,
         events: &Events,
@@ -442,13 +442,13 @@ impl Life {
         let wanted = (moving.last + SLACK).max(first);
         let last = wanted.min(first + MOST_TRIED);
         if first > events.last_tick {
-            // Nothing is compared after it.
+            // No telemetry follows.
             return Choice {
                 tick: None,
                 cut_short: false,
             };
         }
-        // Up to there all trials are the same.
+        // All trials are equal up to there.
         self.run(events, first, moving.order, count);
         let horizon = if moving.is_request {
             next.clamp(last + 2, last + HORIZON)
@@ -484,7 +484,7 @@ impl Life {
         }
     }
 
-    /// Pieces of telemetry until `horizon` that differ if a frame is read just before a tick, or never.
+    /// Number of differing telemetry frames until `horizon` if a frame is read just before a tick, or never.
     fn misfit(&self, events: &Events, moving: &Moving, tick: Option<u64>, horizon: u64) -> usize {
         let (mut life, mut count) = (self.clone(), Count::default());
         if let Some(tick) = tick {
@@ -495,19 +495,19 @@ impl Life {
     }
 }
 
-/// Tick before which a frame was read; `None`: it never came.
+/// Tick before which a frame was read; `None` if it never arrived.
 struct Choice {
     tick: Option<u64>,
-    /// Not every tick that fits the log was tried, and none of those tried fits the telemetry.
+    /// Some candidates were not tried, and none of the tried ones fits the telemetry.
     cut_short: bool,
 }
 
-/// The brain's clock at a tick: its first is one period after its start.
+/// Clock of the brain at a tick, µs: its first tick is one period after its start.
 fn time_of(tick: u64) -> u64 {
     (tick + 1) * u64::from(TICK_US)
 }
 
-/// Bytes that were sent, with the times of keep-alives moved to this brain's clock: as fresh as they were.
+/// Sent bytes, with the times of keep-alives converted to this brain's clock, so that their freshness is the same.
 fn on_this_clock(bytes: &[u8], now_us: u64, origin_us: u64) -> Vec<u8> {
     let mut decoder = Decoder::new();
     let Some(received) = bytes.iter().find_map(|&byte| decoder.push(byte)) else {
@@ -524,10 +524,10 @@ fn on_this_clock(bytes: &[u8], now_us: u64, origin_us: u64) -> Vec<u8> {
         frame(session, sequence, &Message::Heartbeat(heartbeat))
     };
     match received.message {
-        // Its host had heard nothing yet.
+        // Its host had not received the robot yet.
         Ok(Message::Heartbeat(told)) if told.heard_us == 0 => heartbeat(0),
         Ok(Message::Heartbeat(told)) => {
-            // Frames are read here in the middle of a tick: what was heard later in it counts as heard just now.
+            // Frames are read here midway in a tick; a later time within it counts as the present one.
             let heard_us = told.heard_us.wrapping_sub(origin_us);
             let heard_us = heard_us.wrapping_add(u64::from(TICK_US));
             let ahead = heard_us.wrapping_sub(now_us) <= 2 * u64::from(TICK_US);
@@ -537,8 +537,8 @@ fn on_this_clock(bytes: &[u8], now_us: u64, origin_us: u64) -> Vec<u8> {
     }
 }
 
-/// What the tank sees is the same; and, while a play is under way, its place in it (before, the robot still tells of the play
-/// before the log).
+/// Compares the values that affect the tank, and during a play its progress (earlier telemetry still reports the play before
+/// the log).
 fn same(one: &Telemetry, other: &Telemetry) -> bool {
     let seen = |telemetry: &Telemetry| {
         let playing = matches!(
@@ -555,7 +555,7 @@ fn same(one: &Telemetry, other: &Telemetry) -> bool {
     seen(one) == seen(other)
 }
 
-/// A brain like the robot's, whose first session has this number.
+/// Returns a brain like the robot's, whose first session has this number.
 fn brain(events: &Events, session: u16) -> Brain {
     let HelloReply {
         firmware,
@@ -576,7 +576,7 @@ fn brain(events: &Events, session: u16) -> Brain {
         pulse_max_ns: limits.pulse_max_ns,
         ..Limits::ROBOT
     };
-    // A robot does not tell for which servos it was built: the paper's, or else those that it was set up with.
+    // A robot does not report the servo type for which it was built: the paper's servos are assumed, or those that were set up.
     let told = events.servos.iter().flatten().next();
     if let Some(servo) = told
         && !(config.limits.allows_centre(servo.centre_ns)
@@ -599,7 +599,7 @@ fn brain(events: &Events, session: u16) -> Brain {
     Brain::new(config)
 }
 
-/// A flash in which another brain has stored this table.
+/// Flash in which another brain has stored this table.
 fn stored(table: &GaitTable, events: &Events) -> MemoryStorage {
     let mut brain = brain(events, 1);
     let mut flash = MemoryStorage::erased();

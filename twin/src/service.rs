@@ -1,4 +1,4 @@
-//! A virtual robot in real time, behind ports that programs open: a pseudo-terminal, TCP, or both.
+//! Real-time service of a virtual robot behind ports: a pseudo-terminal, TCP, or both.
 
 use std::io;
 use std::time::Duration;
@@ -7,24 +7,23 @@ use host_link::Port;
 
 use crate::VirtualRobot;
 
-/// How long one turn waits for bytes, over all ports together: what a request waits at most before the brain sees it.
+/// Waiting time of one turn for bytes, over all ports together: the longest delay of a request.
 const TURN: Duration = Duration::from_millis(2);
-/// Bytes a turn may send: about four times what a line at 115 200 baud carries meanwhile.
+/// Most bytes sent per turn: about four times the capacity of a line at 115 200 baud.
 const ROOM: usize = 96;
 
-/// Most that the robot's clock moves in one turn: a tick of its brain. Where the machine stalls, or is slower than what it
-/// carries, the robot's time lags behind the ports', like any simulation's: it does not find its lease run out with the
-/// host's bytes still unread.
+/// Largest step of the robot's clock per turn: one tick of its brain. If the machine stalls or is too slow, the robot's time
+/// lags behind the ports', so its lease does not run out while the host's bytes are unread.
 const LONGEST_STEP: Duration = Duration::from_millis(20);
 
-/// Lives with the ports' clock until `go_on` says no: it is asked every few milliseconds. What comes from any port reaches
-/// the robot; what the robot sends goes to all of them.
+/// Runs on the ports' clock until `go_on` returns false; it is called every few milliseconds. Bytes from any port reach the
+/// robot; its output goes to all of them.
 ///
-/// The robot's clock follows that of the first port, from wherever the robot is now, but never catches up on what it missed.
-/// Without ports it returns at once.
+/// The robot's clock follows that of the first port, from its present time, but never makes up for delays. Without ports the
+/// function returns at once.
 ///
 /// # Errors
-/// A port or a robot that failed for good; clients that come and go are no failure.
+/// A permanent failure of a port or the robot. Clients may come and go.
 ///
 /// ```
 /// use swimmer_files::SwimmerFile;

@@ -1,11 +1,11 @@
-//! Two servos between pulses and joint angles: a map read backwards, which need not be the one that the brain believes, and the
-//! plant all predictions share.
+//! Two servos between pulses and joint angles: the inverse of a servo map, which may differ from the brain's, and the servo
+//! model of all predictions.
 
 use gait_player::servo::ServoMap;
 use gait_player::servo::plant::{PlantParameters, ServoPlant};
 use nalgebra::Vector2;
 
-/// Both shafts, at rest straight at first.
+/// Both shafts, initially at rest and straight.
 ///
 /// ```
 /// use swimmer_files::SwimmerFile;
@@ -23,12 +23,12 @@ pub struct Servos {
     maps: [ServoMap; 2],
     plant: PlantParameters,
     shafts: [ServoPlant; 2],
-    /// What the last pulses command, rad; `None`: no pulses, no torque: the gears hold.
+    /// Angles commanded by the last pulses, rad. Without pulses (`None`) there is no torque, and the gears hold.
     command: Option<[f64; 2]>,
 }
 
 impl Servos {
-    /// Servos at angle 0 without pulses.
+    /// Returns servos at angle 0 without pulses.
     pub fn new(maps: [ServoMap; 2], plant: PlantParameters) -> Self {
         Self {
             maps,
@@ -38,19 +38,20 @@ impl Servos {
         }
     }
 
-    /// Where the shafts are, rad.
+    /// Shaft angles, rad.
     pub fn angles(&self) -> [f64; 2] {
         self.shafts.map(|shaft| shaft.angle)
     }
 
-    /// New pulses, ns, or none.
+    /// Sets new pulses, ns, or switches them off.
     pub fn set_pulses(&mut self, pulses_ns: Option<[u32; 2]>) {
         self.command = pulses_ns.map(|pulses| {
             std::array::from_fn(|joint| self.plant.command(&self.maps[joint], pulses[joint]))
         });
     }
 
-    /// Lets `seconds` pass. `visit` sees each vertex of the path: between two of them both angles change evenly.
+    /// Advances by `seconds`. `visit` receives each vertex of the path; between two of them both angles change at constant
+    /// rates.
     pub fn advance(&mut self, seconds: f64, mut visit: impl FnMut(Vector2<f64>)) {
         let Some(command) = self.command else {
             return;

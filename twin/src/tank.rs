@@ -1,13 +1,13 @@
-//! The tank: joint angles move, and the swimmer moves by the model's connection, ġ = g A(Φ) Φ̇.
+//! Virtual tank: moves the swimmer along the joint path by the local connection of the model, ġ = g A(Φ) Φ̇.
 
 use nalgebra::{Vector2, Vector3};
 use swimmer_model::{InvalidSwimmer, Model, Pose, Swimmer};
 
-/// Longest piece of a joint path that is taken in one step, rad. The rule is of fourth order: at 0.02 rad a step's error is
-/// of the order of 1e-9 of the swimmer's length.
+/// Longest piece of a joint path per integration step, rad. The method has order four: at 0.02 rad a step's error is of the
+/// order of 1e-9 of the swimmer's length.
 const LONGEST_PIECE: f64 = 0.02;
 
-/// A swimmer in still, very viscous fluid.
+/// Swimmer in a quiescent, very viscous fluid.
 ///
 /// ```
 /// use nalgebra::Vector2;
@@ -30,10 +30,10 @@ pub struct Tank {
 }
 
 impl Tank {
-    /// Puts a swimmer with straight joints into the tank.
+    /// Places a swimmer with straight joints in the tank.
     ///
     /// # Errors
-    /// The lengths and drags make no swimmer.
+    /// Lengths and drags form no valid swimmer.
     pub fn new(swimmer: &Swimmer<f64>, pose: Pose<f64>) -> Result<Self, InvalidSwimmer> {
         Ok(Self {
             model: Model::new(swimmer)?,
@@ -42,19 +42,19 @@ impl Tank {
         })
     }
 
-    /// Where the middle link is, m and rad, in the tank's frame.
+    /// Pose of the middle link in the tank's frame, m and rad.
     pub fn pose(&self) -> Pose<f64> {
         self.pose
     }
 
-    /// The joint angles Φ, rad.
+    /// Joint angles Φ, rad.
     pub fn phi(&self) -> Vector2<f64> {
         self.phi
     }
 
-    /// Moves the joints on a straight line to `phi`. How fast does not matter to a swimmer without inertia.
+    /// Moves the joints on a straight line to `phi`. The rate does not matter without inertia.
     ///
-    /// Fourth-order Magnus steps with two Gauss points: exact in SE(2) up to the connection's curvature along the piece.
+    /// Magnus steps of order four with two Gauss points: exact in SE(2) up to the connection's curvature along the piece.
     pub fn move_joints(&mut self, phi: Vector2<f64>) {
         let way = phi - self.phi;
         let pieces = (way.norm() / LONGEST_PIECE).ceil();
@@ -76,10 +76,10 @@ impl Tank {
     }
 }
 
-/// The twist whose exponential solves ġ = g X(s) over one step, from X at the two Gauss points.
+/// Twist whose exponential solves ġ = g X(s) over one step, from X at the two Gauss points.
 fn magnus(first: &Vector3<f64>, second: &Vector3<f64>) -> Vector3<f64> {
     let mean = (first + second) * 0.5;
-    // The bracket of se(2): [X, Y] = (ω_X J v_Y − ω_Y J v_X, 0), J a quarter turn.
+    // Lie bracket of se(2): [X, Y] = (ω_X J v_Y − ω_Y J v_X, 0), J a quarter turn.
     let bracket = Vector3::new(
         -first.z * second.y + second.z * first.y,
         first.z * second.x - second.z * first.x,
@@ -93,8 +93,8 @@ mod tests {
     use super::*;
     use swimmer_model::{Circle, Gait, Tolerance, swim};
 
-    /// A polygon with many corners against the model's own integration of the circle: the corners' chords cut off
-    /// (2π/n)²/6 of the area.
+    /// A polygon with many corners, compared with the model's own integration of the circle: the chords cut off (2π/n)²/6 of
+    /// the area.
     #[test]
     fn a_fine_polygon_swims_like_the_circle() {
         for swimmer in [Swimmer::purcell(), Swimmer::robot()] {

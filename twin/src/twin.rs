@@ -1,4 +1,4 @@
-//! The twin itself: the brain and its world in step, from tick to tick.
+//! Digital twin: brain and world in step, from tick to tick.
 
 use std::path::Path;
 use std::time::Duration;
@@ -14,7 +14,7 @@ use crate::config::TwinConfig;
 use crate::virtual_robot::VirtualRobot;
 use crate::world::{CycleStart, Recording, World};
 
-/// A robot in a virtual tank.
+/// Robot in a virtual tank.
 pub struct Twin {
     config: TwinConfig,
     brain: Brain,
@@ -36,10 +36,10 @@ impl std::fmt::Debug for Twin {
 }
 
 impl Twin {
-    /// A robot that has just been switched on, at time zero, somewhere in the tank with a heading of its seed.
+    /// Returns a robot after power-on, at time zero, with position and heading from its seed.
     ///
     /// # Errors
-    /// The lengths and drags make no swimmer.
+    /// Lengths and drags form no valid swimmer.
     pub fn new(config: TwinConfig) -> Result<Self, InvalidSwimmer> {
         let world = World::new(&config)?;
         let mut brain = config.brain();
@@ -56,71 +56,71 @@ impl Twin {
         })
     }
 
-    /// The twin's clock.
+    /// Clock of the twin.
     pub fn now(&self) -> Duration {
         self.world.now()
     }
 
-    /// Where the robot truly is, in the tank's frame.
+    /// True pose of the robot, in the tank's frame.
     pub fn pose(&self) -> Pose<f64> {
         self.world.pose()
     }
 
-    /// Where its joints truly are, rad.
+    /// True joint angles, rad.
     pub fn angles(&self) -> [f64; 2] {
         self.world.angles()
     }
 
-    /// What the brain decided in its last tick; `None` before the first.
+    /// Output of the brain's last tick. Returns `None` before the first.
     pub fn output(&self) -> Option<&Output> {
         self.output.as_ref()
     }
 
-    /// What the brain is doing.
+    /// State of the brain.
     pub fn state(&self) -> StateName {
         self.output
             .map_or(StateName::Stopped, |output| output.state)
     }
 
-    /// The robot's flash, as it is now: a twin made with it comes up as after a power cut.
+    /// Present content of the robot's flash. A twin created with it starts as after a power cut.
     pub fn flash(&self) -> &MemoryStorage {
         &self.flash
     }
 
-    /// What the twin is made of.
+    /// Configuration of the twin.
     pub fn config(&self) -> &TwinConfig {
         &self.config
     }
 
-    /// The radio's STATE pin: connected or not. Connected at first.
+    /// Sets the radio's STATE pin. It is connected at first.
     pub fn set_link_up(&mut self, link_up: bool) {
         self.link_up = link_up;
     }
 
-    /// The cycles that have begun so far.
+    /// Cycles that have begun so far.
     pub fn cycle_starts(&self) -> &[CycleStart] {
         self.world.cycle_starts()
     }
 
-    /// Starts to record at the next frame (frames come every 10 ms of the twin's clock) into a tracking file at `path`. A
-    /// recording under way ends.
+    /// Starts a recording with the next frame (frames come every 10 ms of the twin's clock) into a tracking file at `path`. An
+    /// earlier recording ends.
     ///
     /// # Errors
-    /// [`TrackError`] when nothing can be written there.
+    /// [`TrackError`] if the file cannot be written.
     pub fn start_recording(&mut self, path: &Path) -> Result<(), TrackError> {
         self.world.start_recording(path)
     }
 
-    /// Ends the recording and its file; `None` when none was under way.
+    /// Finishes the recording and its file. Returns `None` without a recording.
     ///
     /// # Errors
-    /// [`TrackError`]; what was written before stays.
+    /// [`TrackError`]; written rows remain.
     pub fn finish_recording(&mut self) -> Result<Option<Recording>, TrackError> {
         self.world.finish_recording()
     }
 
-    /// Lives until `to` on the twin's clock, from event to event: ticks every 20 ms, frames every 10 ms while recording, and
-    /// the end. An earlier time does nothing.
+    /// Advances to `to` on the twin's clock, from event to event: ticks every 20 ms, frames every 10 ms during a recording, and
+    /// the end. An earlier time has no effect.
     pub fn advance(&mut self, to: Duration) {
         let to_us = u64::try_from(to.as_micros()).unwrap_or(u64::MAX);
         while self.next_tick_us <= to_us {

@@ -1,10 +1,10 @@
-//! What every robot in a virtual tank is, whatever carries its brain: who serves, records or plays one need not know which.
+//! Interface of every robot in a virtual tank, independent of the implementation of its brain.
 
 use host_link::port::Device;
 
 use crate::World;
 
-/// A device in virtual time with servos, tank and cameras around it. Its clock is its world's.
+/// Device in virtual time with servos, tank and cameras. Its clock is its world's.
 pub trait VirtualRobot: Device {
     /// Servos, tank and cameras.
     fn world(&self) -> &World;

@@ -1,5 +1,5 @@
-//! Everything outside the robot's board: servos, tank and cameras, from event to event. Twin and emulated board both live in
-//! one; all they tell it is pulses and when a cycle began.
+//! World outside the robot's board: servos, tank and cameras, from event to event. Twin and emulated board both use it; their
+//! inputs are the pulses and the start of each cycle.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -15,25 +15,25 @@ use crate::tank::Tank;
 
 const FRAME_US: u64 = 1_000_000 / Camera::RATE_HZ as u64;
 
-/// A cycle began.
+/// Start of a cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CycleStart {
-    /// When, on the twin's clock: at the tick whose flash the cameras see.
+    /// Time on the twin's clock: the tick whose flash the cameras record.
     pub at: Duration,
-    /// Where the robot truly was then, in the tank's frame.
+    /// True pose of the robot at that time, in the tank's frame.
     pub pose: Pose<f64>,
 }
 
-/// A finished recording of the cameras.
+/// Finished recording of the cameras.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
-    /// The tracking file.
+    /// Path of the tracking file.
     pub path: PathBuf,
-    /// Frames in it.
+    /// Number of frames.
     pub frames: u64,
-    /// The twin's clock at its frame 0.
+    /// Time of frame 0 on the twin's clock.
     pub started: Duration,
-    /// The cycles that began during it.
+    /// Cycles that began during the recording.
     pub cycle_starts: Vec<CycleStart>,
 }
 
@@ -47,7 +47,7 @@ struct Cameras {
     failed: Option<TrackError>,
 }
 
-/// A robot's servos and links in a tank under cameras.
+/// Servos and links of a robot in a tank under cameras.
 ///
 /// ```
 /// use std::time::Duration;
@@ -74,10 +74,10 @@ pub struct World {
 }
 
 impl World {
-    /// A robot that lies somewhere in the tank, straight, with a heading of its seed, at time zero.
+    /// Returns a straight robot at time zero, with position and heading from its seed.
     ///
     /// # Errors
-    /// The lengths and drags make no swimmer.
+    /// Lengths and drags form no valid swimmer.
     pub fn new(config: &TwinConfig) -> Result<Self, InvalidSwimmer> {
         let mut rng = ChaCha8Rng::seed_from_u64(config.seed);
         rng.set_stream(3);
@@ -96,32 +96,32 @@ impl World {
         })
     }
 
-    /// The world's clock.
+    /// Clock of the world.
     pub fn now(&self) -> Duration {
         Duration::from_micros(self.now_us)
     }
 
-    /// The same in whole µs.
+    /// Clock of the world in whole µs.
     pub(crate) fn now_us(&self) -> u64 {
         self.now_us
     }
 
-    /// Where the robot truly is, in the tank's frame.
+    /// True pose of the robot, in the tank's frame.
     pub fn pose(&self) -> Pose<f64> {
         self.tank.pose()
     }
 
-    /// Where its joints truly are, rad.
+    /// True joint angles, rad.
     pub fn angles(&self) -> [f64; 2] {
         self.servos.angles()
     }
 
-    /// The servos get new pulses, ns, or none.
+    /// Sets new pulses of the servos, ns, or switches them off.
     pub fn set_pulses(&mut self, pulses_ns: Option<[u32; 2]>) {
         self.servos.set_pulses(pulses_ns);
     }
 
-    /// The robot begins a cycle: the flash that cameras see.
+    /// Records the start of a cycle: the flash that the cameras record.
     pub fn begin_cycle(&mut self) {
         let start = CycleStart {
             at: self.now(),
@@ -133,16 +133,16 @@ impl World {
         }
     }
 
-    /// The cycles that have begun so far.
+    /// Cycles that have begun so far.
     pub fn cycle_starts(&self) -> &[CycleStart] {
         &self.cycle_starts
     }
 
-    /// Starts to record at the next frame (frames come every 10 ms of the world's clock) into a tracking file at `path`. A
-    /// recording under way ends.
+    /// Starts a recording with the next frame (frames come every 10 ms of the world's clock) into a tracking file at `path`. An
+    /// earlier recording ends.
     ///
     /// # Errors
-    /// [`TrackError`] when nothing can be written there.
+    /// [`TrackError`] if the file cannot be written.
     pub fn start_recording(&mut self, path: &Path) -> Result<(), TrackError> {
         let (seed, number) = (self.seed, self.recordings);
         let file = MotiveFile::create(path, &self.camera, seed)?;
@@ -159,15 +159,15 @@ impl World {
         Ok(())
     }
 
-    /// Why the recording under way takes no more frames, where that is so.
+    /// Error that ended the present recording early, if any.
     pub fn recording_failed(&self) -> Option<&TrackError> {
         self.cameras.as_ref()?.failed.as_ref()
     }
 
-    /// Ends the recording and its file; `None` when none was under way.
+    /// Finishes the recording and its file. Returns `None` without a recording.
     ///
     /// # Errors
-    /// [`TrackError`]; what was written before stays.
+    /// [`TrackError`]; written rows remain.
     pub fn finish_recording(&mut self) -> Result<Option<Recording>, TrackError> {
         let Some(cameras) = self.cameras.take() else {
             return Ok(None);
@@ -185,12 +185,12 @@ impl World {
         }))
     }
 
-    /// Lives until `to`, from frame to frame; an earlier time does nothing. A frame due at `to` itself is taken.
+    /// Advances to `to`, from frame to frame; an earlier time has no effect. A frame due at `to` is included.
     pub fn advance(&mut self, to: Duration) {
         self.advance_us(u64::try_from(to.as_micros()).unwrap_or(u64::MAX));
     }
 
-    /// The same until a time in µs.
+    /// Advances to a time in µs.
     pub(crate) fn advance_us(&mut self, to_us: u64) {
         while let Some(frame) = self.next_frame_us().filter(|frame| *frame <= to_us) {
             self.move_until(frame);

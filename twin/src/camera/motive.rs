@@ -1,7 +1,7 @@
-//! Motive's wide CSV, format 1.23, as an export of two labeled and two unlabeled markers looks.
+//! Motive's wide CSV, format 1.23, like an export of two labeled and two unlabeled markers.
 //!
-//! The file grows under its own name, whole rows at a time, and its header's number of frames with it: whatever happens to the
-//! program or the disk, what was recorded stays and can be read.
+//! The file grows in place by whole rows, together with the number of frames in its header. So after a crash or a full disk the
+//! recorded rows remain readable.
 
 use std::fs::{self, File};
 use std::io::{self, Seek, SeekFrom, Write};
@@ -12,17 +12,17 @@ use rand_chacha::ChaCha8Rng;
 
 use super::{Camera, CameraConfig, Frame};
 
-/// Why a tracking file could not be written.
+/// Error of a tracking file.
 #[derive(Debug, thiserror::Error)]
 #[error("writing the tracking file {}: {source}; does its folder exist and is there room?", path.display())]
 pub struct TrackError {
-    /// The file.
+    /// Path of the file.
     pub path: PathBuf,
-    /// The system's words.
+    /// The system's error.
     pub source: io::Error,
 }
 
-/// A tracking file in the making. Dropped before [`finish`](Self::finish), it ends with the last rows that were written.
+/// Tracking file in progress. Dropped before [`finish`](Self::finish), it ends with the last written rows.
 ///
 /// ```
 /// use swimmer_model::Pose;
@@ -40,26 +40,26 @@ pub struct TrackError {
 pub struct MotiveFile {
     path: PathBuf,
     file: File,
-    /// Rows to be written next.
+    /// Rows to write next.
     rows: Vec<u8>,
     frames: u64,
-    /// Bytes of whole rows on the disk, and how many rows.
+    /// Length of the whole rows on disk, bytes, and their number.
     length: u64,
     kept: u64,
-    /// Where the header has the number of frames.
+    /// Offsets of the number of frames in the header.
     counts: [u64; 2],
 }
 
-/// Rows go to the file so many at a time: a quarter of a second.
+/// Rows per write: a quarter of a second.
 const ROWS: u64 = 25;
-/// Digits of the number of frames, which is written over as it grows.
+/// Digits of the number of frames, which is overwritten as it grows.
 const DIGITS: usize = 10;
 
 impl MotiveFile {
-    /// Starts a file at `path`, in place of what is there. The ghosts' numbers and all ids come from the seed.
+    /// Creates or replaces the file at `path`. The seed determines the ghosts' numbers and all ids.
     ///
     /// # Errors
-    /// [`TrackError`] when nothing can be written there.
+    /// [`TrackError`] if the file cannot be written.
     pub fn create(path: &Path, config: &CameraConfig, seed: u64) -> Result<Self, TrackError> {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         rng.set_stream(2);
@@ -105,20 +105,20 @@ impl MotiveFile {
         })
     }
 
-    /// Where the file is.
+    /// Path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Frames taken so far.
+    /// Number of frames so far.
     pub fn frames(&self) -> u64 {
         self.frames
     }
 
-    /// Adds a frame.
+    /// Appends a frame.
     ///
     /// # Errors
-    /// [`TrackError`]; the rows before stay.
+    /// [`TrackError`]; earlier rows remain.
     pub fn push(&mut self, frame: &Frame) -> Result<(), TrackError> {
         let rate = u64::from(Camera::RATE_HZ);
         let microseconds = self.frames * 1_000_000 / rate;
@@ -144,10 +144,10 @@ impl MotiveFile {
         Ok(())
     }
 
-    /// Ends the file. Returns how many frames it holds.
+    /// Finishes the file. Returns its number of frames.
     ///
     /// # Errors
-    /// [`TrackError`]; the rows that were written stay.
+    /// [`TrackError`]; written rows remain.
     pub fn finish(mut self) -> Result<u64, TrackError> {
         self.write()?;
         let synced = self.file.sync_all();
@@ -155,7 +155,7 @@ impl MotiveFile {
         Ok(self.frames)
     }
 
-    /// Writes the rows that are due, then how many there are; a piece of a row that the disk still took is taken back.
+    /// Writes the pending rows, then their number. Truncates an incomplete row of a full disk.
     fn write(&mut self) -> Result<(), TrackError> {
         let rows = std::mem::take(&mut self.rows);
         let written = self.file.write_all(&rows).and_then(|()| {
@@ -188,12 +188,12 @@ impl Drop for MotiveFile {
     }
 }
 
-/// A number of frames in its place.
+/// Number of frames in the header's format.
 fn count(frames: u64) -> String {
     format!("{frames:0DIGITS$}")
 }
 
-/// The seven rows before the data.
+/// Seven header rows before the data.
 fn header(frames: &str, take: &str, capture_start: &str, points: &[(String, String); 4]) -> String {
     let rate = Camera::RATE_HZ;
     let thrice = |text: &dyn Fn(&(String, String)) -> String| -> String {
@@ -262,7 +262,7 @@ mod tests {
         assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
     }
 
-    /// As after a power cut: what was written a moment before is there, and a reader can make sense of it.
+    /// After a simulated power cut the file has all rows written before, and is readable.
     #[test]
     fn what_was_recorded_stays() {
         let folder = tempfile::tempdir().unwrap();
@@ -283,7 +283,7 @@ mod tests {
         );
     }
 
-    /// A disk that is full takes no row in pieces.
+    /// A full disk gets no incomplete row.
     #[cfg(target_os = "linux")]
     #[test]
     fn a_full_disk_ends_it_with_an_error() {

@@ -1,40 +1,40 @@
-//! Arrival of each frame at the robot, by the robot's own word: every pong has the time at which its ping came, and every piece
-//! of telemetry the number of frames that had come. The host's send times cannot show that: a machine under load writes a frame
-//! long after its time, and its estimate of the robot's clock moves.
+//! Arrival of each frame at the robot, from the robot's own reports: every pong has the arrival time of its ping, and every
+//! telemetry frame the number of received frames. The host's send times are not sufficient: a loaded machine writes a frame
+//! long after its time, and its estimate of the robot's clock changes.
 
 /// Ticks before which a frame may have been read, both inclusive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Window {
     pub(super) first: u64,
     pub(super) last: u64,
-    /// The robot's count of frames gave the window. False near lost frames, where only neighbouring pings bound it.
+    /// The window comes from the robot's count of frames. False near lost frames, where only neighbouring pings bound it.
     pub(super) counted: bool,
 }
 
 impl Window {
-    /// The tick of the window nearest to another one.
+    /// Tick of the window nearest to another tick.
     pub(super) fn nearest(&self, tick: u64) -> u64 {
         tick.clamp(self.first, self.last.max(self.first))
     }
 }
 
-/// A ping among the frames that were sent.
+/// Ping among the sent frames.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PingArrival {
-    /// Its place among the frames that were sent.
+    /// Index among the sent frames.
     pub(super) index: usize,
-    /// The first tick after it was read. `None` if it was not answered.
+    /// First tick after it was read; `None` without a reply.
     pub(super) tick: Option<u64>,
 }
 
-/// The robot's count of sound frames at a tick.
+/// The robot's count of valid frames at a tick.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FrameCount {
     pub(super) tick: u64,
     pub(super) frames_ok: u16,
 }
 
-/// Pings between which no frame was lost: the robot's count minus the place in the log is the same at each of them.
+/// Interval of pings without lost frames: the robot's count minus the index in the log is the same at each of them.
 #[derive(Clone, Copy, Debug)]
 struct Stretch {
     from: usize,
@@ -42,11 +42,11 @@ struct Stretch {
     offset: i64,
 }
 
-/// Ticks by which a counted window may end before the frame was sent, by the host's estimate, and still be believed.
+/// Ticks by which a counted window may end before the host's estimate of the sending and still be accepted.
 const TOLERANCE: u64 = 5;
 
-/// Arrival windows of all frames that were sent, in their order. `sent` has the first tick after each was sent, by the host's
-/// estimate; `end` is the last tick of the log.
+/// Arrival windows of all sent frames, in order. `sent` has the first tick after each sending, by the host's estimate; `end` is
+/// the last tick of the log.
 pub(super) fn windows(
     sent: &[u64],
     pings: &[PingArrival],
@@ -66,7 +66,7 @@ pub(super) fn windows(
             .and_then(|stretch| stretch.window(index, &counts))
             .filter(|window| window.last.saturating_add(TOLERANCE) >= sent);
         let mut window = counted.unwrap_or_else(|| between_pings(index, &answered, end));
-        // A line keeps the order.
+        // The line preserves the order.
         window.first = window.first.max(earliest).min(end.saturating_add(1));
         window.last = window.last.min(end.saturating_add(1)).max(window.first);
         earliest = window.first;
@@ -75,7 +75,7 @@ pub(super) fn windows(
     windows
 }
 
-/// Counts without their wrap-around, in the order of their ticks.
+/// Counts without wrap-around, in the order of their ticks.
 fn unrolled(counts: &[FrameCount]) -> Vec<(u64, i64)> {
     let mut unrolled: Vec<(u64, i64)> = Vec::with_capacity(counts.len());
     let mut last = 0_u16;
@@ -91,7 +91,7 @@ fn unrolled(counts: &[FrameCount]) -> Vec<(u64, i64)> {
     unrolled
 }
 
-/// Only pings count that were the one frame to come between two pieces of telemetry: each of them gives the offset exactly.
+/// Only pings that arrived alone between two telemetry frames are used: each of them gives the exact offset.
 fn stretches(pings: &[PingArrival], counts: &[(u64, i64)]) -> Vec<Stretch> {
     let mut stretches: Vec<Stretch> = Vec::new();
     for ping in pings {
@@ -119,7 +119,7 @@ fn stretches(pings: &[PingArrival], counts: &[(u64, i64)]) -> Vec<Stretch> {
     stretches
 }
 
-/// The stretch that a frame belongs to. The first one reaches back to the start of the log, the last one to its end.
+/// Stretch of a frame. The first one extends to the start of the log, the last one to its end.
 fn stretch_of(index: usize, stretches: &[Stretch]) -> Option<&Stretch> {
     let place = stretches.partition_point(|stretch| stretch.to < index);
     match stretches.get(place) {
@@ -129,7 +129,7 @@ fn stretch_of(index: usize, stretches: &[Stretch]) -> Option<&Stretch> {
 }
 
 impl Stretch {
-    /// `None` if the log ends before the frame was counted.
+    /// Returns `None` if the log ends before the frame was counted.
     fn window(&self, index: usize, counts: &[(u64, i64)]) -> Option<Window> {
         let place = i64::try_from(index).unwrap_or(i64::MAX);
         let later = counts.partition_point(|(_, count)| count - self.offset <= place);
@@ -161,7 +161,7 @@ fn between_pings(index: usize, answered: &[(usize, u64)], end: u64) -> Window {
 mod tests {
     use super::*;
 
-    /// Frames read before these ticks, every fifth a ping, telemetry at every second tick, the count begun at `base`.
+    /// Frames read before these ticks, every fifth a ping, telemetry at every second tick, with a count that begins at `base`.
     fn log(
         read: &[u64],
         lost: &[usize],
@@ -190,7 +190,7 @@ mod tests {
     }
 
     fn late(count: u64) -> Vec<u64> {
-        // Every third tick, with a stall of half a second after which all comes at once.
+        // Every third tick, with a stall of half a second after which all arrive at once.
         (0..count)
             .map(|index| match 10 + 3 * index {
                 tick @ 100..=125 => tick.max(125),
@@ -234,7 +234,7 @@ mod tests {
                 (window.first..=window.last).contains(&read[index]),
                 "{index}: {window:?}"
             );
-            // The last ping before that came alone is the 27th frame.
+            // The last ping before them that arrived alone is the 27th frame.
             let near = (28..=46).contains(&index);
             assert_eq!(window.counted, !near, "{index}: {window:?}");
         }

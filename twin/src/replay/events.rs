@@ -1,4 +1,4 @@
-//! The events of a log, on the robot's ticks.
+//! Events of a log, assigned to the robot's ticks.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -12,42 +12,42 @@ use swimmer_files::LinkFrame;
 use super::arrival::{FrameCount, PingArrival, Window, windows};
 use super::{BEFORE, ReplayError};
 
-/// Longest log that is replayed, in ticks: a day.
+/// Longest replayed log, ticks: one day.
 const MOST_TICKS: u64 = 24 * 3600 * 50;
-/// Longest time without telemetry, in ticks: the longest play without a host.
+/// Longest time without telemetry, ticks: the longest play without a host.
 const LONGEST_GAP: u64 = 3600 * 50;
-/// Longest time from a log's first frame to its first telemetry that is replayed, in ticks.
+/// Longest time from a log's first frame to its first telemetry, ticks.
 const LONGEST_START: u64 = 10 * 50;
-/// Ticks before the end of a lease in which the keep-alive was read that fed it last: 460 ms, and the telemetry's two ticks.
+/// Ticks before the end of a lease in which its last keep-alive was read: 460 ms, plus two ticks of the telemetry.
 const LEASE: std::ops::RangeInclusive<u64> = 20..=27;
-/// The same for a keep-alive of which only the host's estimate is known.
+/// Upper bound of the same for a keep-alive whose arrival only the host estimates, ticks.
 const LONGEST_LEASE: u64 = 50;
 
-/// A frame whose tick is searched: a request that moves the robot or changes how it moves, or a keep-alive that decides when the
-/// lease ends.
+/// Frame whose tick must be determined: a request that starts or changes a motion, or a keep-alive that decides the end of the
+/// lease.
 pub(super) struct Moving {
-    /// Its place among all frames of the log.
+    /// Index among all frames of the log.
     pub(super) order: usize,
     pub(super) bytes: Vec<u8>,
-    /// The first tick that may have seen it.
+    /// First possible tick.
     pub(super) first: u64,
-    /// The last one: its answer was received then.
+    /// Last possible tick: the reply was received then.
     pub(super) last: u64,
-    /// The tick that is tried first.
+    /// Tick that is tried first.
     pub(super) likely: u64,
-    /// The log shows that it came.
+    /// The log shows that it arrived.
     pub(super) came: bool,
     pub(super) is_request: bool,
 }
 
-/// Anything else that was sent.
+/// Any other sent frame.
 pub(super) struct Still {
-    /// Its place among all frames of the log.
+    /// Index among all frames of the log.
     pub(super) order: usize,
     pub(super) bytes: Vec<u8>,
-    /// Ticks that may have seen it.
+    /// Possible ticks.
     pub(super) window: Window,
-    /// The first tick after it was sent, by the host's estimate.
+    /// First tick after it was sent, by the host's estimate.
     pub(super) sent: u64,
 }
 
@@ -61,7 +61,7 @@ impl Still {
     }
 }
 
-/// Tick within its window in which a frame is read that moves nothing.
+/// Tick within its window at which a still frame is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Placing {
     AsSent,
@@ -69,27 +69,27 @@ pub(super) enum Placing {
     Late,
 }
 
-/// The log on the robot's ticks. Tick 0 is the first that is lived.
+/// Log on the robot's ticks. Tick 0 is the first simulated one.
 pub(super) struct Events {
     pub(super) hello: HelloReply,
     pub(super) moving: Vec<Moving>,
     pub(super) still: Vec<Still>,
     pub(super) telemetry: BTreeMap<u64, Telemetry>,
     pub(super) last_tick: u64,
-    /// The robot's clock a period before tick 0, µs.
+    /// Robot time one period before tick 0, µs.
     pub(super) origin_us: u64,
     pub(super) configuration: Option<Configuration>,
     pub(super) servos: [Option<ServoSettings>; 2],
     pub(super) battery_at_start: Option<u16>,
     pub(super) state_at_start: StateName,
     pub(super) table_at_start: Option<u32>,
-    /// First ticks of the windows that the robot's counts do not give, in order.
+    /// First ticks of the windows that are not determined by the robot's counts, in order.
     pub(super) uncertain: Vec<u64>,
     /// The robot restarted later in the log.
     pub(super) restarted: bool,
 }
 
-/// A frame with the message in it, at a time of the robot's clock \[µs\].
+/// Frame with its decoded message, at a time of the robot's clock \[µs\].
 struct Read<'a> {
     frame: &'a LinkFrame,
     at_us: f64,
@@ -146,7 +146,7 @@ impl Events {
         })
     }
 
-    /// Robot time from the first to the last telemetry \[s\].
+    /// Robot time from the first to the last telemetry, s.
     pub(super) fn seconds(&self) -> f64 {
         let first = self.telemetry.keys().next().copied().unwrap_or_default();
         (self.last_tick - first) as f64 * f64::from(TICK_US) * 1e-6
@@ -163,13 +163,13 @@ fn telemetry<'a>(read: &'a [Read<'_>], from: usize) -> impl Iterator<Item = &'a 
         })
 }
 
-/// The log up to where the robot restarted: another boot greets, or its clock goes back.
+/// Log up to a restart of the robot: a greeting with another boot nonce, or a clock that goes back.
 fn until_restart<'a>(
     mut read: Vec<Read<'a>>,
     greeting: usize,
     hello: &HelloReply,
 ) -> Vec<Read<'a>> {
-    /// Telemetry that was overtaken on the way is no restart.
+    /// Delayed telemetry does not count as a restart.
     const OVERTAKEN_US: u64 = 1_000_000;
     let mut latest_us = 0;
     let restart = read.iter().skip(greeting).position(|read| {
@@ -190,7 +190,7 @@ fn until_restart<'a>(
     read
 }
 
-/// Refuses logs whose telemetry has times that no session has: each tick between them would be computed.
+/// Refuses logs with implausible telemetry times, because each tick between them would be simulated.
 fn check_span(telemetry: &BTreeMap<u64, Telemetry>, last_tick: u64) -> Result<(), ReplayError> {
     if last_tick > MOST_TICKS {
         return Err(ReplayError::TooLong);
@@ -204,7 +204,7 @@ fn check_span(telemetry: &BTreeMap<u64, Telemetry>, last_tick: u64) -> Result<()
     }
 }
 
-/// State and set-point of the robot as the log begins: its first word on them after the greeting, requested or not.
+/// State and set-point of the robot at the start of the log: its first report after the greeting, requested or not.
 fn found(read: &[Read<'_>], greeting: usize) -> Option<(StateName, [i16; 2])> {
     let mut heard = read
         .iter()
@@ -217,13 +217,13 @@ fn found(read: &[Read<'_>], greeting: usize) -> Option<(StateName, [i16; 2])> {
     })
 }
 
-/// The robot's servo periods, counted from a little before the log.
+/// Grid of the robot's servo periods, from shortly before the log.
 struct Ticks {
     origin_us: u64,
 }
 
 impl Ticks {
-    /// Telemetry goes out on even ticks since the start, and `first_us` was one of them.
+    /// Telemetry is sent on even ticks since the start, and `first_us` was one of them.
     fn new(first_us: u64, times: impl Iterator<Item = f64>) -> Self {
         let tick = u64::from(TICK_US);
         let earliest = times.fold(first_us as f64, f64::min).max(0.0);
@@ -237,15 +237,15 @@ impl Ticks {
         }
     }
 
-    /// The tick at a time of the robot's clock.
+    /// Tick at a time of the robot's clock.
     fn at(&self, robot_us: u64) -> u64 {
         let tick = i128::from(TICK_US);
-        // The origin may lie before the robot's start.
+        // The origin may be before the robot's start.
         let since = i128::from(robot_us) - i128::from(self.origin_us.cast_signed());
         u64::try_from((since.max(0) + tick / 2) / tick).unwrap_or(u64::MAX)
     }
 
-    /// The first tick after a time of the robot's clock.
+    /// First tick after a time of the robot's clock.
     fn after(&self, at_us: f64) -> u64 {
         let ticks = (at_us - self.origin_us.cast_signed() as f64) / f64::from(TICK_US);
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // saturates at 0
@@ -254,7 +254,7 @@ impl Ticks {
     }
 }
 
-/// Every sound frame on the robot's clock: by the log's own estimate, and before the first ping came back by that ping.
+/// Assigns robot times to all valid frames: by the log's own estimate, and before the first reply to a ping by that ping.
 fn on_the_robots_clock(frames: &[LinkFrame]) -> Result<Vec<Read<'_>>, ReplayError> {
     let host_us = |frame: &LinkFrame| frame.host_time_ns as f64 * 1e-3;
     let known = frames.iter().find_map(|frame| {
@@ -303,7 +303,7 @@ struct Sent {
     uncertain: Vec<u64>,
 }
 
-/// Sorts the frames that were sent into those whose tick is searched, each once, and the rest.
+/// Splits the sent frames into those whose tick must be determined, each once, and the rest.
 fn sent(read: &[Read<'_>], clock: &Ticks, telemetry: &BTreeMap<u64, Telemetry>, end: u64) -> Sent {
     let answers = answers(read);
     let windows = arrivals(read, clock, telemetry, end);
@@ -319,7 +319,7 @@ fn sent(read: &[Read<'_>], clock: &Ticks, telemetry: &BTreeMap<u64, Telemetry>, 
         .enumerate()
         .filter(|(_, read)| read.frame.direction == Direction::ToRobot);
     for ((order, read), window) in frames.zip(windows) {
-        // After the last telemetry nothing is compared.
+        // Nothing is compared after the last telemetry.
         let after = clock.after(read.at_us).min(end + 1);
         let header = read.received.header;
         let is_request =
@@ -338,7 +338,7 @@ fn sent(read: &[Read<'_>], clock: &Ticks, telemetry: &BTreeMap<u64, Telemetry>, 
             read.received.message,
             Ok(Message::Request(Request::SetKey(_)))
         ) {
-            // Its key is not in the log. A brain without one reads past the signatures.
+            // The key is not in the log. A brain without a key skips the signatures.
             continue;
         }
         if !window.counted {
@@ -384,7 +384,7 @@ fn sent(read: &[Read<'_>], clock: &Ticks, telemetry: &BTreeMap<u64, Telemetry>, 
     sent
 }
 
-/// When each request was answered first, on the robot's clock.
+/// Time of the first reply to each request, on the robot's clock.
 fn answers(read: &[Read<'_>]) -> HashMap<(u16, u16), f64> {
     read.iter()
         .rev()
@@ -392,7 +392,7 @@ fn answers(read: &[Read<'_>]) -> HashMap<(u16, u16), f64> {
         .filter(|read| {
             matches!(&read.received.message, Ok(Message::Reply(reply)) if !matches!(reply, Reply::Working))
         })
-        // From the last to the first: the first answer stays.
+        // In reverse order, so that the first reply remains.
         .map(|read| {
             let header = read.received.header;
             ((header.session, header.sequence), read.at_us)
@@ -488,7 +488,7 @@ fn moves(request: &Request) -> bool {
     }
 }
 
-/// What the robot said of its settings before any was changed.
+/// Settings that the robot reported before any change.
 #[derive(Default)]
 struct Facts {
     configuration: Option<Configuration>,

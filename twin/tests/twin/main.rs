@@ -1,4 +1,4 @@
-//! The twin over its link: how it swims, what it records, and whether a log of its frames replays the same set-points.
+//! Digital twin over its link: displacements, recordings, and replay of its link logs.
 
 mod play;
 mod recording;

@@ -11,11 +11,11 @@ use swimmer_files::SwimmerFile;
 use swimmer_model::{Circle, Gait, Pose};
 use twin::{CycleStart, Recording, Twin, TwinConfig, TwinPort, WireSpeed};
 
-/// What came of it.
+/// Results of a play.
 pub(crate) struct Played {
-    /// Cycle starts, the last one's end included.
+    /// Cycle starts, including the end of the last cycle.
     pub(crate) cycle_starts: Vec<CycleStart>,
-    /// Where the robot was when the last cycle had ended and it stood still again.
+    /// Pose after the last cycle, at rest.
     pub(crate) end: Pose<f64>,
     pub(crate) telemetry: Vec<Telemetry>,
     pub(crate) recording: Option<Recording>,
@@ -31,7 +31,7 @@ pub(crate) fn circle(amplitude: f64) -> Circle<f64> {
     Circle { amplitude }
 }
 
-/// A table of `knots` knots on a gait.
+/// Table of `knots` knots on a gait.
 pub(crate) fn table(knots: usize, gait: &impl Gait<f64>) -> GaitTable {
     GaitTable::from_fn(knots, |u| {
         let phi = gait.at(u).phi;
@@ -40,12 +40,12 @@ pub(crate) fn table(knots: usize, gait: &impl Gait<f64>) -> GaitTable {
     .unwrap()
 }
 
-/// Uploads, plays `cycles` cycles of `period_s`, waits for the end.
+/// Uploads, plays `cycles` cycles of `period_s`, and waits for the end.
 pub(crate) fn play(config: TwinConfig, table: &GaitTable, cycles: u32, period_s: f64) -> Played {
     play_recorded(config, table, cycles, period_s, None)
 }
 
-/// The same under the cameras.
+/// Plays under the cameras.
 pub(crate) fn play_recorded(
     config: TwinConfig,
     table: &GaitTable,
@@ -64,7 +64,7 @@ pub(crate) fn play_recorded(
         })
         .unwrap();
     robot.arm(false).unwrap();
-    // One cycle more than asked for, so that the last one asked for has an end in the list of starts.
+    // One extra cycle, whose start marks the end of the last requested one.
     robot
         .play(cycles + 1, Duration::from_secs_f64(period_s), false)
         .unwrap();

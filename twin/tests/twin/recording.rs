@@ -1,4 +1,4 @@
-//! Tracking files of whole plays: their form, their truth, their repeatability.
+//! Tracking files of whole plays: format, accuracy, reproducibility.
 
 use std::fs;
 
@@ -6,7 +6,7 @@ use crate::play::{circle, play_recorded, robot, table};
 use swimmer_model::Pose;
 use twin::{CameraConfig, TwinConfig};
 
-/// A file's cells, row by row, after the checks of its form that every test wants.
+/// Cells of a file by row, after the format checks common to all tests.
 fn read(path: &std::path::Path) -> (Vec<Vec<String>>, Vec<Vec<String>>) {
     let text = fs::read_to_string(path).unwrap();
     assert!(
@@ -65,7 +65,7 @@ fn a_recording_has_motive_s_form_and_the_right_totals() {
             );
         }
     }
-    // Some of each: drop-outs of the reflectors, and ghosts.
+    // Both occur: drop-outs of the reflectors, and ghosts.
     assert!(data.iter().any(|row| row[2].is_empty()) && data.iter().any(|row| row[5].is_empty()));
     assert!(
         data.iter().any(|row| !row[8].is_empty()) && data.iter().any(|row| !row[11].is_empty())

@@ -1,4 +1,4 @@
-//! Replay of a link log gives the robot's own set-points and pulses; a log that was tampered with does not.
+//! Replay of a link log yields the robot's own set-points and pulses; a modified log does not.
 
 use std::io;
 use std::ops::ControlFlow;
@@ -33,7 +33,7 @@ fn message(bytes: &[u8]) -> Option<(Header, Message)> {
     Some((received.header, received.message.ok()?))
 }
 
-/// The frames of a session, with both clocks as a recorder keeps them.
+/// Frames of a session, with both clocks as a recorder stores them.
 fn recorded(
     port: impl Port + 'static,
     act: impl FnOnce(&mut Robot<Box<dyn Port>>),
@@ -90,8 +90,8 @@ fn live(robot: &mut Robot<Box<dyn Port>>, seconds: f64) {
     robot.listen(time, |_| ControlFlow::Continue(())).unwrap();
 }
 
-/// Everything that moves a robot, at moments that fit no tick: a pause within a cycle, a gait swapped while playing, a stop, a
-/// second play to its end, an e-stop and what clears it.
+/// Every request that moves a robot, at moments off the tick grid: a pause within a cycle, a swap during a play, a stop, a
+/// second play to its end, an e-stop and its clearing.
 fn everything(robot: &mut Robot<Box<dyn Port>>) {
     live(robot, 1.003);
     upload(robot, &table(1.0));
@@ -131,7 +131,7 @@ fn a_log_gives_the_same_pulses() {
     assert_eq!((told.missing_table, told.verdict), (None, Verdict::Same));
 }
 
-/// A machine under load: bytes leave later than the log says, and arrive before they are read.
+/// Loaded machine: bytes leave later than the log says, and arrive before they are read.
 struct Loaded<P> {
     port: P,
     held: Vec<u8>,
@@ -147,7 +147,7 @@ impl<P: Port> Loaded<P> {
         }
     }
 
-    /// One time in ten, up to 150 ms: the lease is not in danger.
+    /// One time in ten, up to 150 ms, which does not endanger the lease.
     fn stall(&mut self) -> io::Result<()> {
         if !self.random.random_bool(0.1) {
             return Ok(());
@@ -198,7 +198,7 @@ fn so_does_one_of_a_loaded_machine() {
     }
 }
 
-/// The tick in which a lease ends depends on the keep-alive that came last.
+/// The tick in which a lease ends depends on the last keep-alive.
 #[test]
 fn a_play_that_lost_its_link_is_the_same() {
     let mut same = 0;
@@ -227,7 +227,7 @@ fn a_play_that_lost_its_link_is_the_same() {
     assert!(same > 0);
 }
 
-/// Telemetry, pongs and requests with numbers that no robot sends, in frames whose checksums are right.
+/// Telemetry, pongs and requests with implausible numbers, in frames with correct checksums.
 #[test]
 fn absurd_numbers_end_in_a_verdict() {
     let frames = recorded(twin(), |robot| {
@@ -283,7 +283,7 @@ fn absurd_numbers_end_in_a_verdict() {
             .map(|us| us.wrapping_mul(1 << (index % 50)));
     }
     let _ = replay(&clocks, None);
-    // A hundred thousand stops in the middle of the play, which the robot of this log did not obey.
+    // A hundred thousand stops during the play, which the robot of this log did not execute.
     let is_playing = |frame: &LinkFrame| matches!(message(&frame.bytes), Some((_, Message::Telemetry(telemetry))) if telemetry.state == StateName::Playing);
     let middle = frames.iter().position(is_playing).unwrap() + 20;
     let at = frames[middle].clone();
@@ -310,7 +310,7 @@ fn absurd_numbers_end_in_a_verdict() {
     assert_ne!(told.verdict, Verdict::Same, "{told:?}");
 }
 
-/// A robot that restarts ends the comparison, not the program.
+/// A restart of the robot ends the comparison, not the program.
 #[test]
 fn a_restart_ends_the_comparison() {
     let first = recorded(twin(), |robot| live(robot, 2.0));
@@ -325,7 +325,7 @@ fn a_restart_ends_the_comparison() {
 #[test]
 fn nothing_compared_is_not_the_same() {
     let frames = recorded(twin(), |robot| live(robot, 1.0));
-    // Without the greeting that was sent, the brain has no session and reports nothing.
+    // Without the greeting, the brain has no session and sends no telemetry.
     let mute: Vec<LinkFrame> = frames
         .into_iter()
         .filter(|frame| !matches!(message(&frame.bytes), Some((_, Message::Hello(_)))))
@@ -347,7 +347,7 @@ fn so_does_one_of_a_link_that_drops_and_delays() {
     assert!(told.compared > 500, "{told:?}");
 }
 
-/// A robot that shares a key with its hosts.
+/// Robot that shares a key with its hosts.
 fn keyed_twin() -> TwinPort {
     let mut robot = Robot::connect(twin(), 1).unwrap();
     robot.set_key(Some(KEY)).unwrap();
@@ -363,7 +363,7 @@ fn with_key(key: Key) -> SessionConfig {
     }
 }
 
-/// The key is not in the log, and need not be: who may ask is decided before, and replay asks what was done then.
+/// The log lacks the key and does not need it: the robot has checked the authority, and replay repeats the accepted requests.
 #[test]
 fn so_does_one_that_was_signed_without_the_key() {
     let frames = recorded_with(keyed_twin(), with_key(KEY), everything);
@@ -377,7 +377,7 @@ fn so_does_one_that_was_signed_without_the_key() {
     assert!(told.compared > 600 && told.requests == 14, "{told:?}");
 }
 
-/// A key that is set meanwhile stands in the log as zeros, and what follows is signed with the true one.
+/// A key set during the log is recorded as zeros, and later frames are signed with the true one.
 #[test]
 fn a_log_in_which_a_key_is_set_is_the_same() {
     let frames = recorded(twin(), |robot| {
@@ -397,7 +397,7 @@ fn a_log_in_which_a_key_is_set_is_the_same() {
     assert_eq!(told.verdict, Verdict::Same, "{told:#?}");
 }
 
-/// A host without the right key moves nothing, not even a clock: there is nothing to compare.
+/// A host without the correct key moves nothing, not even the clock, so there is nothing to compare.
 #[test]
 fn a_log_of_a_host_that_was_turned_away_says_so() {
     for session in [SessionConfig::new(7), with_key(Key([0; 16]))] {
@@ -413,7 +413,7 @@ fn a_log_of_a_host_that_was_turned_away_says_so() {
     }
 }
 
-/// Another period in the log's Play, and the brain plays otherwise than the robot did.
+/// With another period in the log's Play, the brain plays differently from the robot.
 #[test]
 fn a_log_that_was_tampered_with_does_not() {
     let mut frames = recorded(twin(), everything);
@@ -436,7 +436,7 @@ fn a_log_that_was_tampered_with_does_not() {
     assert_ne!(Some(first.logged), first.replayed);
 }
 
-/// A gait that the robot held before the log began must be named.
+/// A gait from before the log must be passed to the replay.
 #[test]
 fn a_gait_from_before_the_log_is_named_from_outside() {
     let mut port = Robot::connect(Box::new(twin()) as Box<dyn Port>, 1).unwrap();
@@ -464,7 +464,7 @@ fn a_gait_from_before_the_log_is_named_from_outside() {
     }
 }
 
-/// A play names the settings of the robot: a replay with others reports that the log does not hold them.
+/// A play refers to the robot's settings; a replay with others reports that the log lacks them.
 #[test]
 fn settings_from_before_the_log_are_reported() {
     let mut robot = Robot::connect(Box::new(twin()) as Box<dyn Port>, 1).unwrap();

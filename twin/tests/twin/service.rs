@@ -1,4 +1,4 @@
-//! The twin in real time, opened by path as a program would, and its memory over a power cut.
+//! Twin in real time, opened by path like a real port, and its memory over a power cut.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -12,7 +12,7 @@ use host_link::{LinkError, Port, Robot};
 use link_protocol::StateName;
 use twin::{Twin, TwinConfig, TwinPort, VirtualRobot, WireSpeed, World, serve};
 
-/// Ends the service even where the host's part panics.
+/// Ends the service even if the host's part panics.
 struct End<'a>(&'a AtomicBool);
 impl Drop for End<'_> {
     fn drop(&mut self) {
@@ -20,7 +20,7 @@ impl Drop for End<'_> {
     }
 }
 
-/// Runs `host` while a twin is served behind a pseudo-terminal and a TCP port with the given faults.
+/// Runs `host` while a twin is served behind a pseudo-terminal and a TCP port with these faults.
 fn with_twin(faults: &str, host: impl FnOnce(&str, std::net::SocketAddr)) -> Twin {
     let folder = tempfile::tempdir().unwrap();
     let link = folder.path().join("robot");
@@ -66,7 +66,7 @@ fn programs_open_upload_play_stop_close_and_open_again() {
         ));
         robot.stop().unwrap();
         drop(robot);
-        // The link is free again; another program finds the robot at rest, or on its way there.
+        // The port is free again; another program finds the robot at rest, or ramping to neutral.
         let mut again = Robot::connect(SerialPort::open(path, 115_200).unwrap(), 2).unwrap();
         let status = again.status().unwrap();
         assert!(matches!(
@@ -85,7 +85,7 @@ fn tcp_serves_the_same_robot() {
         near.trim(link_protocol::Joint::Back, 0.01).unwrap();
         let mut far = Robot::connect(TcpPort::connect(address).unwrap(), 2).unwrap();
         assert_eq!(far.servo(link_protocol::Joint::Back).unwrap().trim, 100);
-        // The first session is over, and says so.
+        // The first session has ended, and reports it.
         assert!(matches!(near.status(), Err(LinkError::SessionLost { .. })));
     });
 }
@@ -123,7 +123,7 @@ fn a_table_survives_a_power_cut_with_its_flash() {
     assert_eq!(robot.table().unwrap().unwrap().crc32, gait.crc32());
 }
 
-/// A robot that the machine is too slow for: what it lives takes four times as long.
+/// Robot on a slow machine: its simulation takes four times as long.
 struct Slow(Twin);
 
 impl Device for Slow {

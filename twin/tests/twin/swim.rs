@@ -1,4 +1,4 @@
-//! What the twin swims against what the model says it should: through the link, the brain, the servos and the tank.
+//! Displacements of the twin against the model's prediction, through link, brain, servos and tank.
 
 use std::f64::consts::TAU;
 
@@ -37,7 +37,7 @@ fn an_ideal_robot_swims_what_the_model_says() {
         );
         assert!(error.abs() < 1e-4, "{error:e}");
         assert!(moved.theta.abs() < 1e-4);
-        // The pose that the brain predicted on board agrees too, once it believes the truth.
+        // The pose that the brain estimates agrees too, after it was configured with the true swimmer.
         assert!(played.finished);
     }
 }
@@ -53,7 +53,7 @@ fn a_mirrored_gait_swims_the_mirrored_way() {
             0,
         )
     };
-    // A wait for one cycle: φ → −φ reflects x, y and turn of the path in the middle link's line.
+    // φ → −φ mirrors x, y and turn of the path about the middle link's line.
     let (plain, mirror) = (run(&forward), run(&mirrored));
     let scale = plain.position().norm();
     assert!(scale > 1e-3);
@@ -71,7 +71,7 @@ fn a_mirrored_gait_swims_the_mirrored_way() {
     );
 }
 
-/// The played path of `gait-player`, swum by the model, is what calibration and prediction use: the twin must agree.
+/// Calibration and prediction use the played path of `gait-player` with the model, so the twin must agree with it.
 #[test]
 fn the_dead_band_costs_what_the_played_path_predicts() {
     let swimmer = Swimmer::robot();
@@ -104,14 +104,14 @@ fn the_dead_band_costs_what_the_played_path_predicts() {
         let cost = 1.0 - moved.position().norm() / ideal;
         costs.push(cost);
     }
-    // The smaller the circle, the dearer the dead band.
+    // The smaller the circle, the larger the loss by the dead band.
     assert!(
         costs.is_sorted_by(|a, b| a > b) && costs[0] > 0.01 && costs[2] > 0.0,
         "{costs:?}"
     );
 }
 
-/// Swims the played path of one cycle.
+/// Integrates the model along the played path of one cycle.
 fn predict(swimmer: &Swimmer<f64>, playback: &Playback<'_>, cycle: u32) -> Pose<f64> {
     let mut tank = Tank::new(swimmer, Pose::identity()).unwrap();
     let mut start = None;
@@ -124,7 +124,7 @@ fn predict(swimmer: &Swimmer<f64>, playback: &Playback<'_>, cycle: u32) -> Pose<
 
 #[test]
 fn a_slow_servo_cuts_corners_as_predicted() {
-    // So slow that the circle is out of its reach: the brain may not know, the shafts lag.
+    // The servos are too slow for the circle: the brain may not know it, and the shafts lag.
     let swimmer = Swimmer::robot();
     let table = table(512, &circle(1.2));
     let mut config = TwinConfig::new(&robot(), 3);
@@ -168,7 +168,7 @@ fn the_pose_on_board_is_the_truth_where_the_brain_knows_it() {
         "on board ({:.5}, {:.5}, {:.5}), in the tank {truth:?}",
         told.x, told.y, told.theta
     );
-    // The ramp back to neutral is in both; f32, a tick of lag, and the telemetry's last word is 40 ms old.
+    // Both include the ramp back to neutral; f32, a tick of lag, and the last telemetry is 40 ms old.
     assert!(
         (f64::from(told.x) - truth.x).abs() < 2e-4,
         "{told:?} {truth:?}"
