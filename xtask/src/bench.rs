@@ -1,4 +1,5 @@
-//! `cargo xtask bench`: our benches, the lab page by its own clock, then the Python peers on the same machine in the same run, one thread, and the ratios.
+//! `cargo xtask bench`: runs our benches, the timing of the lab page, and Python packages for comparison ("peers") with one thread,
+//! all in one run on one machine, and prints the ratios.
 
 use std::path::{Path, PathBuf};
 
@@ -10,30 +11,30 @@ use crate::failure::{Failure, Outcome};
 use crate::lab;
 use crate::run::{cargo, command, read, run, target_folder, works};
 
-/// What times the peers; it runs beside a copy of their modules.
+/// Script that times the peers; it runs next to a copy of their modules.
 const PEERS: &str = include_str!("bench/peers.py");
-/// The open GPOPS-II algorithm; it pins an older `CasADi`, so it has an environment of its own.
+/// Open implementation of the GPOPS-II algorithm. It pins an older `CasADi`, so it has its own environment.
 const YAPSS: &str = "yapss==0.2.3";
-/// Its script among the peers.
+/// Script of the peers that uses it.
 const YAPSS_SCRIPT: &str = "yap.py";
-/// The newest at the time of writing, pinned so that ratios can be compared over time.
+/// Newest versions at the time of writing, pinned so that ratios can be compared over time.
 const PACKAGES: [&str; 4] = [
     "numpy==2.4.6",
     "scipy==1.17.1",
     "casadi==3.8.2",
     "pandas==3.1.1",
 ];
-/// Libraries under `NumPy` that would take all processors.
+/// Variables that limit the libraries under `NumPy` to one thread.
 const ONE_THREAD: [&str; 3] = ["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"];
 
-/// A peer's figure beside ours.
+/// Comparison of one of our benches with the peers.
 struct Comparison {
     what: &'static str,
-    /// Our bench, as criterion names its folder.
+    /// Our bench, by the name of criterion's folder.
     ours: &'static str,
-    /// What of ours does it.
+    /// Our implementation.
     by: &'static str,
-    /// Name in the peers' JSON, and how to call it.
+    /// Key in the peers' JSON, and display name.
     peers: &'static [(&'static str, &'static str)],
 }
 
@@ -143,17 +144,17 @@ const COMPARISONS: [Comparison; 8] = [
     },
 ];
 
-/// How ours finds a Lighthill gait.
+/// Our search for a Lighthill gait.
 const COLD: &str = "gait-optimizer, cold";
 
-/// Runs the benches and, where they can be had, the peers of `folder`.
+/// Runs the benches and, if they are available, the peers of `folder`.
 ///
 /// # Errors
-/// When our own benches fail. A peer that cannot be run is reported and left out.
+/// One of our benches fails. A peer that cannot run is reported and skipped.
 pub(crate) fn run_all(folder: &Path) -> Outcome {
     run(
         &mut cargo(["bench", "--workspace", "--bench", "*"]),
-        "mend what the benches name above",
+        "fix what the benches report above",
     )?;
     if let Err(failure) = lab::bench() {
         println!("\n!!!! the lab page was NOT MEASURED !!!!\n{failure}");
@@ -168,7 +169,7 @@ pub(crate) fn run_all(folder: &Path) -> Outcome {
     }
 }
 
-/// Copies the peers, makes their virtual environment where it is missing, and times them.
+/// Copies the peers, creates their virtual environment if it is missing, and times them.
 fn peers_times(folder: &Path, place: &Path) -> Outcome<Value> {
     make_folder(place)?;
     for module in entries(folder, |name| {
@@ -176,7 +177,7 @@ fn peers_times(folder: &Path, place: &Path) -> Outcome<Value> {
             .extension()
             .is_some_and(|ending| ending == "py")
     })? {
-        // Not `fs::copy`: it would copy a write protection, too, and the next run could not replace the file.
+        // `fs::copy` would also copy a write protection, and the next run could not replace the file.
         write(
             &place.join(module.file_name().unwrap_or_default()),
             read_bytes(&module)?,
@@ -204,7 +205,7 @@ fn peers_times(folder: &Path, place: &Path) -> Outcome<Value> {
     Ok(times)
 }
 
-/// What YAPSS takes for Purcell's swimmer with ten segments, by the radius of the circle that it starts from.
+/// Times of YAPSS for Purcell's swimmer with ten segments, by the radius of the initial circle.
 fn yapss_times(place: &Path) -> Outcome<Vec<(String, f64)>> {
     let python = place.join("yapss/bin/python");
     if !works(command(&python).args(["-c", "import yapss"])) {
@@ -239,7 +240,7 @@ fn yapss_line(line: &str) -> Option<(String, f64)> {
     Some((after("eps0")?.to_owned(), after("time")?.parse().ok()?))
 }
 
-/// The Python of a virtual environment with the peers' packages.
+/// Python of a virtual environment with the peers' packages.
 fn environment(place: &Path) -> Outcome<PathBuf> {
     let python = place.join("venv/bin/python");
     if !works(command(&python).args(["-c", "import numpy, scipy"])) {
@@ -311,7 +312,7 @@ fn print_comparisons(target: &Path, times: &Value) -> Outcome {
     Ok(())
 }
 
-/// Seconds of one call: the median that criterion left in its folder.
+/// Time of one call \[s\]: the median in criterion's folder.
 fn our_time(target: &Path, bench: &str) -> Outcome<f64> {
     let path = target
         .join("criterion")

@@ -1,4 +1,4 @@
-//! `cargo xtask book`: the book as HTML, offline, with every link in it followed.
+//! `cargo xtask book`: builds the book as HTML for offline reading and checks its links.
 
 use std::path::Path;
 
@@ -6,13 +6,13 @@ use crate::debian;
 use crate::failure::Outcome;
 use crate::run::{cargo, command, run, target_folder};
 
-/// Where the book's builder lies; npm puts what sets formulas beside it.
+/// Folder of the book's builder, in which npm installs `KaTeX` for the formulas.
 const BUILDER: &str = "xtask/book";
 
-/// Installs `KaTeX` where it is not there yet, and builds the book.
+/// Installs `KaTeX` if it is missing, and builds the book.
 ///
 /// # Errors
-/// Node or npm cannot be had, a page cannot be built, or a link leads nowhere.
+/// Node or npm is not available, a page cannot be built, or a link is broken.
 pub(crate) fn build() -> Outcome {
     debian::ensure_tool(command("node").arg("--version"), &["nodejs"])?;
     if !Path::new(BUILDER).join("node_modules/katex").exists() {
@@ -26,6 +26,6 @@ pub(crate) fn build() -> Outcome {
     }
     run(
         cargo(["run", "--quiet", "-p", "book", "--"]).arg(target_folder()?.join("book")),
-        "mend the pages or links that are named above",
+        "fix the pages or links named above",
     )
 }

@@ -1,4 +1,4 @@
-//! `cargo xtask test`: everything that must hold before a change lands, in one go.
+//! `cargo xtask test`: all checks and tests that a change must pass.
 
 use std::process::Command;
 
@@ -20,10 +20,10 @@ const ON_THE_CHIP: [&str; 3] = ["swimmer-model", "link-protocol", "gait-player"]
 /// The fuzz targets' own workspace.
 const FUZZ: &str = "fuzz/Cargo.toml";
 
-/// Takes all steps, cheap ones first, goes on after one that fails, and prints how long each took.
+/// Runs all steps, cheap ones first, continues after a failure, and prints the time of each step.
 ///
 /// # Errors
-/// All steps that failed.
+/// The failed steps.
 pub(crate) fn all() -> Outcome {
     let mut steps = Steps::default();
     let toolchain = steps.take("what is needed", what_is_needed);
@@ -40,9 +40,9 @@ pub(crate) fn all() -> Outcome {
     if let Some(toolchain) = toolchain {
         for_the_chip(&mut steps, &toolchain);
     }
-    // Without it the tests of the booted firmware fail; this step says why.
+    // Without the emulator the tests of the booted firmware fail; this step reports the reason.
     steps.take("emulator for the firmware", emulator::install);
-    // Off Debian there is none, and the test says that it is skipped; in CI it must be there.
+    // Other systems than Debian have no Slurm here and skip the test with a message; CI requires it.
     let required = std::env::var("CI").is_ok_and(|ci| ci == "true");
     steps.take("Slurm for the test of job arrays", || {
         slurm::unpack().or_else(|failure| {
@@ -53,32 +53,32 @@ pub(crate) fn all() -> Outcome {
     steps.take("clippy for the host", || {
         run(
             cargo(["clippy", "--workspace", "--all-targets"]).args(["--", "-D", "warnings"]),
-            "mend what clippy names above",
+            "fix what clippy reports above",
         )
     });
     steps.take("fuzz targets, checked", || {
         run(
-            // Named, libFuzzer is not compiled: it takes a C++ compiler and a minute, and nothing is linked here.
+            // If this path is set, libFuzzer is not compiled, which would need a C++ compiler and a minute. Nothing is linked here.
             cargo(["clippy", "--manifest-path", FUZZ, "--all-targets"])
                 .args(["--", "-D", "warnings"])
                 .env("CUSTOM_LIBFUZZER_PATH", "target/libfuzzer.a"),
-            "mend the targets under fuzz/",
+            "fix the targets under fuzz/",
         )
     });
     steps.take("documentation", || {
         run(
             cargo(["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-Dwarnings"),
-            "mend what rustdoc names above",
+            "fix what rustdoc reports above",
         )
     });
     steps.take("book: pages, formulas, links", book::build);
     steps.take("tests and doctests", || {
         run(
             &mut cargo(["test", "--workspace", "--no-fail-fast"]),
-            "mend what the tests name above",
+            "fix what the tests report above",
         )
     });
-    // Where it cannot be tested, a person may go on; CI may not.
+    // A developer may continue without these tests, CI may not.
     steps.take("lab page: sizes, command, browsers", || lab::test(required));
     steps.take("Python wheel", || python::test(required));
     println!("\n{}", steps.summary());
@@ -102,7 +102,7 @@ fn for_the_chip(steps: &mut Steps, toolchain: &Toolchain) {
         packages(&mut clippy, &["firmware"]);
         run(
             clippy.args(toolchain.clippy_flags()),
-            "mend what clippy names above",
+            "fix what clippy reports above",
         )
     });
 }
@@ -113,7 +113,7 @@ fn packages(cargo: &mut Command, names: &[&str]) {
     }
 }
 
-/// Finds or installs every tool; the second time it only finds them.
+/// Finds every required tool, or installs it.
 fn what_is_needed() -> Outcome<Toolchain> {
     debian::ensure_tool(command("cc").arg("--version"), &["gcc", "libc6-dev"])?;
     for component in ["fmt", "clippy"] {

@@ -1,4 +1,4 @@
-//! Debian's packages: installs what is missing when it may, prints the command when it may not.
+//! Debian packages: installs missing ones if permitted, otherwise prints the command.
 
 use std::fs;
 use std::process::Command;
@@ -6,7 +6,7 @@ use std::process::Command;
 use crate::failure::{Failure, Outcome};
 use crate::run::{command, read, run, works};
 
-/// Whether this machine has Debian's package tools.
+/// Returns `true` if this machine has Debian's package tools.
 pub(crate) fn is_debian() -> bool {
     let os_release = fs::read_to_string("/etc/os-release").unwrap_or_default();
     is_debian_like(&os_release)
@@ -14,15 +14,15 @@ pub(crate) fn is_debian() -> bool {
         && works(command("dpkg-deb").arg("--version"))
 }
 
-/// Whether we may install packages: root, on Debian.
+/// Returns `true` if packages may be installed: root on Debian.
 pub(crate) fn may_install() -> bool {
     is_debian() && read(command("id").arg("-u"), "").is_ok_and(|id| id.trim() == "0")
 }
 
-/// Makes sure that a tool runs, and installs its packages where it does not.
+/// Makes sure that a tool runs; installs its packages if it does not.
 ///
 /// # Errors
-/// When it is missing and we are not root on Debian, or when it still does not run after the installation.
+/// The tool is missing and packages may not be installed, or it does not run after the installation.
 pub(crate) fn ensure_tool(check: &mut Command, packages: &[&str]) -> Outcome {
     if works(check) {
         return Ok(());
@@ -63,7 +63,7 @@ pub(crate) fn ensure_tool(check: &mut Command, packages: &[&str]) -> Outcome {
     }
 }
 
-/// Fetches the package lists (as root; anybody else goes on with the lists that are there).
+/// Fetches the package lists as root; other users continue with the existing lists.
 pub(crate) fn update() -> Outcome {
     if !may_install() {
         return Ok(());
@@ -74,7 +74,7 @@ pub(crate) fn update() -> Outcome {
     )
 }
 
-/// The newest version of a package that the lists know, if any.
+/// Newest version of a package in the lists. Returns `None` if they do not contain it.
 pub(crate) fn candidate(package: &str) -> Option<String> {
     let madison = read(command("apt-cache").args(["madison", package]), "").ok()?;
     newest(&madison)

@@ -1,22 +1,22 @@
-//! `cargo xtask deny`: licences, sources, doubled versions and known holes of everything we depend on.
+//! `cargo xtask deny`: checks licences, sources, duplicate versions and known vulnerabilities of all dependencies.
 
 use crate::failure::Outcome;
 use crate::run::run;
 use crate::tools::DENY;
 
-/// The house, and the fuzz targets' workspace beside it.
+/// Main workspace and workspace of the fuzz targets.
 const WORKSPACES: [&str; 2] = ["Cargo.toml", "fuzz/Cargo.toml"];
 
-/// Holds both Cargo.lock against deny.toml.
+/// Checks both Cargo.lock files against deny.toml.
 ///
 /// # Errors
-/// Something is not allowed, or cargo-deny is not there.
+/// A dependency violates deny.toml, or cargo-deny is missing.
 pub(crate) fn check(install: bool) -> Outcome {
-    // Known holes last: they alone need the network, and the rest is told without.
+    // Vulnerabilities last: only they need the network, and the other results are printed without it.
     for checks in [&["licenses", "bans", "sources"][..], &["advisories"]] {
         for workspace in WORKSPACES {
             run(
-                // What is only a remark would bury what is not.
+                // Remarks would hide errors.
                 DENY.cargo(install)?
                     .args(["--log-level", "error", "--config", "deny.toml"])
                     .args(["--manifest-path", workspace])

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::failure::{Failure, Outcome};
 
-/// The failure of something done to a path.
+/// Failure of an operation on a path.
 pub(crate) fn failed(doing: &str, path: &Path, why: io::Error) -> Failure {
     Failure::new(
         format!("{doing} {}", path.display()),
@@ -15,12 +15,12 @@ pub(crate) fn failed(doing: &str, path: &Path, why: io::Error) -> Failure {
     )
 }
 
-/// Makes a folder and its parents where they are missing.
+/// Creates a folder and its missing parents.
 pub(crate) fn make_folder(path: &Path) -> Outcome {
     fs::create_dir_all(path).map_err(|why| failed("making the folder", path, why))
 }
 
-/// Removes a folder with all in it; one that is not there is fine.
+/// Removes a folder with its content; a missing folder is no error.
 pub(crate) fn remove_folder(path: &Path) -> Outcome {
     match fs::remove_dir_all(path) {
         Err(why) if why.kind() != io::ErrorKind::NotFound => Err(failed("removing", path, why)),
@@ -28,7 +28,7 @@ pub(crate) fn remove_folder(path: &Path) -> Outcome {
     }
 }
 
-/// Writes a file, and makes its folder.
+/// Writes a file and creates its folder.
 pub(crate) fn write(path: &Path, content: impl AsRef<[u8]>) -> Outcome {
     if let Some(folder) = path.parent() {
         make_folder(folder)?;
@@ -48,7 +48,7 @@ pub(crate) fn copy(from: &Path, to: &Path) -> Outcome {
         .map_err(|why| failed("copying to", to, why))
 }
 
-/// Entries of a folder whose names fit, sorted.
+/// Sorted entries of a folder whose names satisfy `fits`.
 pub(crate) fn entries(folder: &Path, fits: impl Fn(&str) -> bool) -> Outcome<Vec<PathBuf>> {
     let all = fs::read_dir(folder).map_err(|why| failed("listing", folder, why))?;
     let mut paths: Vec<_> = all

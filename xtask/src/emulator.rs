@@ -1,4 +1,4 @@
-//! The RP2040 emulator of `emulator/board`: a package of npm at a pinned version, installed beside its scripts.
+//! Installation of the RP2040 emulator: an npm package at a pinned version, next to the scripts in `emulator/board`.
 
 use std::path::Path;
 
@@ -8,10 +8,10 @@ use crate::run::{command, run};
 
 const BOARD: &str = "emulator/board";
 
-/// Installs what `package-lock.json` names, where it is not there yet.
+/// Installs the packages of `package-lock.json` if they are missing.
 ///
 /// # Errors
-/// Node or npm cannot be had, or the package cannot be fetched.
+/// Node or npm is not available, or a package cannot be fetched.
 pub(crate) fn install() -> Outcome {
     debian::ensure_tool(command("node").arg("--version"), &["nodejs"])?;
     if Path::new(BOARD).join("node_modules/rp2040js").exists() {

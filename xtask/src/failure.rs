@@ -1,8 +1,8 @@
-//! One kind of error for every chore: what was being done, why it failed, what to do next.
+//! Error of every chore: the activity, the reason of the failure, the next step for the user.
 
 use std::fmt::Display;
 
-/// A chore that failed.
+/// Failure of a chore.
 #[derive(Debug, thiserror::Error)]
 #[error("{doing}: {why}\n  next: {next}")]
 pub(crate) struct Failure {
@@ -26,5 +26,5 @@ impl Failure {
     }
 }
 
-/// What every chore returns.
+/// Result of a chore.
 pub(crate) type Outcome<T = ()> = Result<T, Failure>;

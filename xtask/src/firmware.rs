@@ -1,4 +1,4 @@
-//! Builds the firmware of a board: the ELF file for a probe, the UF2 file for the USB boot drive.
+//! Build of the firmware of a board: the ELF file for a debug probe and the UF2 file for the USB boot drive.
 
 use std::process::Command;
 
@@ -10,10 +10,10 @@ use crate::image::Image;
 use crate::run::{command, run, target_folder, works};
 use crate::toolchain::{Target, Toolchain};
 
-/// Read by `firmware/src/battery.rs`.
+/// Variable that `firmware/src/battery.rs` reads.
 const DIVIDER: &str = "SWIMMER_BATTERY_DIVIDER_MILLI";
 
-/// The boards of `firmware/src/board.rs`.
+/// Board of `firmware/src/board.rs`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Board {
     /// Arduino Nano RP2040 Connect.
@@ -23,10 +23,10 @@ pub(crate) enum Board {
 }
 
 impl Board {
-    /// Every board.
+    /// All boards.
     pub(crate) const ALL: [Self; 2] = [Self::NanoConnect, Self::Pico];
 
-    /// The firmware's cargo feature.
+    /// Cargo feature of the firmware.
     fn feature(self) -> &'static str {
         match self {
             Self::NanoConnect => "nano-connect",
@@ -35,16 +35,16 @@ impl Board {
     }
 }
 
-/// One image that can be built.
+/// Variant of the firmware image.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Variant {
     pub(crate) board: Board,
-    /// How many times the pack's voltage is above the pin's, in thousandths; none: no divider is soldered.
+    /// Ratio of the pack's voltage to the pin's in thousandths; `None` if no divider is soldered.
     pub(crate) battery_divider_milli: Option<u32>,
 }
 
 impl Variant {
-    /// What the tests boot: both boards as they are, and the Nano with a divider, so that its battery can be low.
+    /// Images that the tests boot: both boards, and the Nano with a divider for tests of a low battery.
     pub(crate) const TESTED: [Self; 3] = [
         Self {
             board: Board::NanoConnect,
@@ -61,7 +61,7 @@ impl Variant {
         }
     }
 
-    /// Chooses it on a cargo command line.
+    /// Adds the arguments and variables of the variant to a cargo command.
     fn select(self, cargo: &mut Command) -> &mut Command {
         cargo.args(["-p", "firmware", "--no-default-features"]);
         cargo.args(["--features", self.board.feature()]);
@@ -80,14 +80,14 @@ impl Variant {
     }
 }
 
-/// Builds one image, weighs it, and leaves `swimmer-NAME.elf` and `.uf2` in `target/firmware-images`.
+/// Builds an image, checks its size, and writes `swimmer-NAME.elf` and `.uf2` to `target/firmware-images`.
 ///
 /// # Errors
-/// When the build fails or the image takes more flash or RAM than promised.
+/// The build fails, or the image exceeds its limits of flash or RAM.
 pub(crate) fn build(toolchain: &Toolchain, variant: Variant) -> Outcome {
     run(
         variant.select(&mut toolchain.cargo("build")),
-        "mend what the compiler names above",
+        "fix what the compiler reports above",
     )?;
     let target = target_folder()?;
     let elf = target.join(Target::Chip.triple()).join("firmware/firmware");
@@ -108,7 +108,7 @@ pub(crate) fn build(toolchain: &Toolchain, variant: Variant) -> Outcome {
     image.footprint.check()
 }
 
-/// Refuses binary information that lacks a string, as an image has if the linker script drops the section.
+/// Refuses incomplete binary information, which results if the linker script drops its section.
 fn complete(info: BinaryInfo) -> Outcome<BinaryInfo> {
     if info.program.is_some() && info.version.is_some() && info.board.is_some() {
         return Ok(info);
@@ -120,10 +120,10 @@ fn complete(info: BinaryInfo) -> Outcome<BinaryInfo> {
     ))
 }
 
-/// Builds and flashes one board through a debug probe, then shows its log.
+/// Builds the firmware, flashes a board through a debug probe, and shows its log.
 ///
 /// # Errors
-/// When probe-rs is missing, finds no probe, or the build fails.
+/// probe-rs is missing or finds no probe, or the build fails.
 pub(crate) fn flash(toolchain: &Toolchain, variant: Variant) -> Outcome {
     if !works(command("probe-rs").arg("--version")) {
         return Err(Failure::new(
@@ -147,7 +147,7 @@ pub(crate) fn flash(toolchain: &Toolchain, variant: Variant) -> Outcome {
 mod tests {
     use std::path::Path;
 
-    /// The pins are written in code, in the README's table and in the picture: all three say the same.
+    /// The pins in the code, in the README's table and in the picture agree.
     #[test]
     fn the_picture_and_the_table_name_the_pins_of_the_code() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../firmware");

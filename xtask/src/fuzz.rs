@@ -1,4 +1,4 @@
-//! `cargo xtask fuzz`: every fuzz target for a minute, from the seeds in the repository and whatever earlier runs found.
+//! `cargo xtask fuzz`: runs every fuzz target for a minute, from the seeds in the repository and the corpus of earlier runs.
 
 use std::path::{Path, PathBuf};
 
@@ -7,18 +7,18 @@ use crate::failure::{Failure, Outcome};
 use crate::run::{command, read, run, target_folder};
 use crate::tools::FUZZ;
 
-/// The small files that the tests of the tracking readers use.
+/// Small files of the tests of the tracking readers.
 const TRACKS: &str = "calibrate/tests/formats";
 
 /// Runs one target, or all, for `seconds` each.
 ///
 /// # Errors
-/// A target found a case that breaks its promise (its file is named, to be run again alone), or cargo-fuzz cannot be had.
+/// A target found a failing case, whose file is named, or cargo-fuzz is not available.
 pub(crate) fn run_targets(only: Option<&str>, seconds: u32) -> Outcome {
     debian::ensure_tool(command("c++").arg("--version"), &["g++"])?;
     let fuzz = || -> Outcome<_> {
         let mut fuzz = FUZZ.cargo(true)?;
-        // Sanitizers ask for unstable flags; the stable compiler takes them with this.
+        // Sanitizers need unstable flags; this variable makes the stable compiler accept them.
         fuzz.env("RUSTC_BOOTSTRAP", "1");
         Ok(fuzz)
     };
@@ -39,7 +39,7 @@ pub(crate) fn run_targets(only: Option<&str>, seconds: u32) -> Outcome {
         let corpus = corpus(target)?;
         let time = format!("-max_total_time={seconds}");
         let mut target_run = fuzz()?;
-        // No sanitizer: the workspace has no unsafe code on a host, and without one the targets run several times faster.
+        // No sanitizer: the workspace has no unsafe code on a host, and the targets run several times faster without one.
         target_run
             .args(["run", "--sanitizer", "none", target])
             .arg(&corpus);
@@ -53,13 +53,13 @@ pub(crate) fn run_targets(only: Option<&str>, seconds: u32) -> Outcome {
         ]);
         run(
             &mut target_run,
-            "run the named file alone with `cargo fuzz run TARGET FILE`, mend, and keep it as a test",
+            "run the named file alone with `cargo fuzz run TARGET FILE`, fix the fault, and keep the file as a test",
         )?;
     }
     Ok(())
 }
 
-/// The folder of what a target starts from and finds: outside the repository, with copies of the repository's seeds.
+/// Corpus folder of a target: outside the repository, with copies of the repository's seeds.
 fn corpus(target: &str) -> Outcome<PathBuf> {
     let corpus = target_folder()?.join("fuzz-corpus").join(target);
     let copy = || -> std::io::Result<()> {
@@ -81,7 +81,7 @@ fn corpus(target: &str) -> Outcome<PathBuf> {
     Ok(corpus)
 }
 
-/// Where a target starts: its own seeds, or the files of the readers' tests in its format.
+/// Initial corpus of a target: its seeds, or the files of the readers' tests in its format.
 fn seeds(root: &Path, target: &str) -> std::io::Result<Vec<PathBuf>> {
     let begins: &[&str] = match target {
         "tracks" => &[""],

@@ -1,4 +1,4 @@
-//! What an ELF image takes of the chip: flash and RAM against what the project promises.
+//! Flash and RAM of an ELF image, checked against their limits.
 
 use std::fmt;
 
@@ -8,24 +8,24 @@ use object::{Endianness, Object, ObjectSymbol};
 
 use crate::failure::{Failure, Outcome};
 
-/// Most flash that the firmware may take, in bytes.
+/// Limit of flash in bytes.
 pub(crate) const FLASH_CAP: u32 = 256 * 1024;
-/// Most RAM, stack and variables together, in bytes.
+/// Limit of RAM in bytes, stack and variables together.
 pub(crate) const RAM_CAP: u32 = 96 * 1024;
-/// Where the RP2040 shows its flash.
+/// Address range of the RP2040's flash.
 const FLASH: std::ops::Range<u32> = 0x1000_0000..0x1100_0000;
-/// Where it has its RAM.
+/// Address range of its RAM.
 const RAM: std::ops::Range<u32> = 0x2000_0000..0x2004_2000;
 
-/// A firmware image.
+/// Firmware image.
 pub(crate) struct Image<'a> {
-    /// Address and bytes of what goes into flash.
+    /// Segments in flash: address and bytes.
     pub(crate) flash: Vec<(u32, &'a [u8])>,
-    /// What it takes.
+    /// Memory use.
     pub(crate) footprint: Footprint,
 }
 
-/// Bytes that an image takes.
+/// Memory use of an image in bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Footprint {
     flash: u32,
@@ -37,7 +37,7 @@ impl<'a> Image<'a> {
     /// Reads a 32-bit ELF file.
     ///
     /// # Errors
-    /// When it is none, or lacks the symbols of the stack.
+    /// The file is not a 32-bit ELF file or lacks the symbols of the stack.
     pub(crate) fn from_elf(bytes: &'a [u8]) -> Outcome<Self> {
         let broken = |why: &dyn fmt::Display| {
             Failure::new(
@@ -91,10 +91,10 @@ impl<'a> Image<'a> {
 }
 
 impl Footprint {
-    /// Fails past the caps.
+    /// Checks the limits.
     ///
     /// # Errors
-    /// When flash or RAM is over; the message has the figures.
+    /// Flash or RAM exceeds its limit; the message has the numbers.
     pub(crate) fn check(self) -> Outcome {
         if self.flash <= FLASH_CAP && self.ram() <= RAM_CAP {
             return Ok(());

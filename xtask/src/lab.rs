@@ -1,4 +1,4 @@
-//! `cargo xtask lab`: the lab page as one HTML file, weighed against its promised size.
+//! `cargo xtask lab`: builds the lab page as one HTML file and checks its size.
 
 mod browse;
 
@@ -13,12 +13,12 @@ use crate::toolchain::{Target, Toolchain};
 
 pub(crate) use browse::{bench, test};
 
-/// The page's sources. npm installs the bundler and the test tools there.
+/// Sources of the page; npm installs the bundler and the test tools there.
 const PAGE: &str = "lab/page";
 /// Modules built from `lab/wasm`, one for each kind of worker: the feature that selects it and the optimisation level of
 /// `lab/wasm` itself. Generic code gets its caller's level, so the module that computes while a gait is dragged has a high one.
 const MODULES: [(&str, &str); 3] = [("explore", "2"), ("drive", "'z'"), ("calibrate", "'z'")];
-/// Promised sizes, bytes.
+/// Limits of the sizes in bytes.
 const LARGEST_MODULE: usize = 1_200_000;
 const LARGEST_PAGE: usize = 1_600_000;
 /// Optimisation level of the standard library's sines and exponentials. Only this build compiles that crate.
@@ -34,13 +34,13 @@ const FEATURES: [&str; 7] = [
     "--enable-multivalue",
 ];
 
-/// Builds modules and page, and returns where the page is.
+/// Builds modules and page. Returns the path of the page.
 ///
 /// # Errors
-/// Node, npm or the compiler cannot be had, a source is wrong, or a file is larger than promised.
+/// Node, npm or the compiler is not available, a source has an error, or a file exceeds its limit.
 pub(crate) fn build() -> Outcome<PathBuf> {
     install()?;
-    let next = "mend what the type checker names above";
+    let next = "fix what the type checker reports above";
     run(tool("tsc").arg("--noEmit"), next)?;
     let toolchain = Toolchain::find_or_make(Target::Page)?;
     println!("{}", toolchain.describe());
@@ -61,7 +61,7 @@ pub(crate) fn build() -> Outcome<PathBuf> {
             .args([version, &hash])
             .args(&packed)
             .current_dir(PAGE),
-        "mend what the bundler names above",
+        "fix what the bundler reports above",
     )?;
     for ((name, _), module) in MODULES.iter().zip(&modules) {
         weigh(&format!("module {name}"), module, LARGEST_MODULE)?;
@@ -71,10 +71,10 @@ pub(crate) fn build() -> Outcome<PathBuf> {
     Ok(page)
 }
 
-/// Installs what `package-lock.json` names, where that was not done since it changed.
+/// Installs the packages of `package-lock.json` if it changed since the last installation.
 ///
 /// # Errors
-/// Node or npm cannot be had, or a package cannot be fetched.
+/// Node or npm is not available, or a package cannot be fetched.
 pub(crate) fn install() -> Outcome {
     debian::ensure_tool(command("node").arg("--version"), &["nodejs"])?;
     let (wanted, installed) = ("package-lock.json", "node_modules/.installed-lock.json");
@@ -92,7 +92,7 @@ pub(crate) fn install() -> Outcome {
     crate::disk::write(&Path::new(PAGE).join(installed), lock)
 }
 
-/// A program that npm installed, called in the page's folder.
+/// Program installed by npm, to be run in the page's folder.
 fn tool(name: &str) -> Command {
     let mut tool = command("node");
     tool.arg(format!("node_modules/.bin/{name}"))
@@ -100,7 +100,7 @@ fn tool(name: &str) -> Command {
     tool
 }
 
-/// Compiles a module and makes it smaller.
+/// Compiles a module and reduces its size.
 fn module(toolchain: &Toolchain, name: &str, level: &str) -> Outcome<PathBuf> {
     run(
         toolchain.cargo("build").args([
@@ -114,7 +114,7 @@ fn module(toolchain: &Toolchain, name: &str, level: &str) -> Outcome<PathBuf> {
             "--config",
             FAST,
         ]),
-        "mend what the compiler names above",
+        "fix what the compiler reports above",
     )?;
     let target = target_folder()?;
     let built = target
@@ -123,7 +123,7 @@ fn module(toolchain: &Toolchain, name: &str, level: &str) -> Outcome<PathBuf> {
     let folder = target.join("lab");
     make_folder(&folder)?;
     let small = folder.join(format!("{name}.wasm"));
-    // Cargo has one place for both, and touches it only where it compiled or copied anew.
+    // Cargo writes both modules to one path, and updates the file only if it compiled or copied it.
     let kept = folder.join(format!("{name}.built"));
     let bytes = read_bytes(&built)?;
     if small.is_file() && std::fs::read(&kept).is_ok_and(|before| before == bytes) {
@@ -142,7 +142,7 @@ fn module(toolchain: &Toolchain, name: &str, level: &str) -> Outcome<PathBuf> {
                 "-o",
             ])
             .args([&small, &built]),
-        "mend what wasm-opt names above",
+        "fix what wasm-opt reports above",
     )?;
     crate::disk::write(&kept, bytes)?;
     Ok(small)
@@ -175,7 +175,7 @@ fn packed(module: &Path) -> Outcome<PathBuf> {
     Ok(small)
 }
 
-/// The commit that is checked out, marked if the checkout differs from it; `unknown` outside a repository.
+/// Current commit, marked if the checkout has changes; `unknown` outside a repository.
 fn commit() -> String {
     let next = "";
     let Ok(hash) = read(
@@ -197,6 +197,6 @@ fn weigh(name: &str, path: &Path, most: usize) -> Outcome {
     Err(Failure::new(
         format!("weighing {}", path.display()),
         format!("{size} bytes, and {most} are promised"),
-        "take out what grew, or say in ARCHITECTURE.md why more is right",
+        "reduce the size, or raise the limit with a reason in ARCHITECTURE.md",
     ))
 }

@@ -1,4 +1,4 @@
-//! The project's own chores, so that no one has to remember a command line: `cargo xtask --help` lists them.
+//! Chores of the developers, each as one command; `cargo xtask --help` lists them.
 
 mod bench;
 mod book;
@@ -31,20 +31,20 @@ use failure::{Failure, Outcome};
 use firmware::{Board, Variant};
 use toolchain::{Target, Toolchain};
 
-/// The project's own chores.
+/// Chores of the project's developers.
 #[derive(Debug, Parser)]
 #[command(name = "cargo xtask", bin_name = "cargo xtask")]
 enum Chore {
-    /// Installs what is needed, builds the firmware, and runs format, clippy, documentation and every test.
+    /// Installs missing tools, builds the firmware, and runs format, clippy, documentation and every test.
     Test,
-    /// Finds the compilers for the RP2040 and for the lab page, or makes them from Debian's packages.
+    /// Finds the compilers for the RP2040 and for the lab page, or makes them from Debian packages.
     Toolchain,
-    /// Builds the firmware's ELF and UF2 files and weighs them against the promised flash and RAM.
+    /// Builds the firmware's ELF and UF2 files and checks their use of flash and RAM.
     Firmware {
         /// One board instead of all.
         #[arg(long)]
         board: Option<Board>,
-        /// A divider is soldered to the battery pin: how many times the pack's voltage is above the pin's, in thousandths.
+        /// Ratio of the pack's voltage to that of the battery pin in thousandths, if a divider is soldered.
         #[arg(long, value_name = "MILLI", value_parser = clap::value_parser!(u32).range(1000..))]
         battery_divider: Option<u32>,
     },
@@ -56,23 +56,23 @@ enum Chore {
         #[arg(long, value_name = "MILLI", value_parser = clap::value_parser!(u32).range(1000..))]
         battery_divider: Option<u32>,
     },
-    /// Builds the book from the pages of this checkout, and follows every link in it.
+    /// Builds the book from the pages of this checkout and checks every link in it.
     Book,
-    /// Builds the lab page: the module as WebAssembly, the page round it, one HTML file in target/lab.
+    /// Builds the lab page with its WebAssembly modules: one HTML file in target/lab.
     Lab,
-    /// Makes what a release would hold: the command, the wheel, firmware, checksums, notes.
+    /// Makes the content of a release: the command, the wheel, firmware, checksums, notes.
     Release {
-        /// Only make it, under target/release-dry-run.
+        /// Only make the files, under target/release-dry-run.
         #[arg(long)]
         dry_run: bool,
     },
     /// Installs the RP2040 emulator that boots the firmware in tests (npm).
     Emulator,
-    /// Unpacks Debian's Slurm under target/slurm, for the test of job arrays.
+    /// Unpacks Debian's Slurm under target/slurm for the test of job arrays.
     Slurm,
     /// Builds the Python wheel, installs it under target/python, and tests it: pytest, mypy, stubtest, notebooks.
     Python,
-    /// Runs our benches, then the Python peers beside them, and prints the ratios.
+    /// Runs our benches and Python packages for comparison, and prints the ratios.
     Bench {
         /// Folder of the peers' Python modules (`model.py`, `gaits.py`); it is copied, not written to.
         #[arg(default_value = "../shared/bench")]
@@ -82,17 +82,17 @@ enum Chore {
     Fuzz {
         /// One target instead of all.
         target: Option<String>,
-        /// How long each runs.
+        /// Time for each target.
         #[arg(long, default_value_t = 60)]
         seconds: u32,
     },
-    /// Holds licences, sources and versions of all dependencies against deny.toml (cargo-deny).
+    /// Checks licences, sources and versions of all dependencies against deny.toml (cargo-deny).
     Deny {
         /// Installs cargo-deny under target/tools where it is not there.
         #[arg(long)]
         install: bool,
     },
-    /// Breaks the code that protects in many small ways and lists what no test notices (cargo-mutants).
+    /// Mutates the safety-relevant code and lists the changes that no test detects (cargo-mutants).
     Mutants {
         /// One crate instead of all.
         package: Option<String>,
@@ -165,10 +165,10 @@ fn perform(chore: Chore) -> Outcome {
     }
 }
 
-/// Cargo takes `.cargo/config.toml` from where it is called; every chore is called from the workspace's root.
+/// Changes to the root of the workspace: cargo reads `.cargo/config.toml` from the current folder.
 fn enter_the_root() -> Outcome {
     let Some(manifest) = std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from) else {
-        return Ok(()); // called by hand, without cargo: from the root, we trust
+        return Ok(()); // started without cargo; the current folder is assumed to be the root
     };
     let root = manifest.parent().unwrap_or(&manifest).to_owned();
     std::env::set_current_dir(&root).map_err(|why| {

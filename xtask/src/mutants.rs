@@ -1,13 +1,12 @@
-//! `cargo xtask mutants`: promise R14. Breaks the code that protects, one small change at a time, and lists the changes
-//! that no test notices. What was found, and what cannot matter, stands in docs/carrying-on/mutants.md; `.cargo/mutants.toml` leaves the
-//! latter out.
+//! `cargo xtask mutants`: mutation tests of the safety-relevant code (promise R14). Makes one small change at a time and lists the
+//! changes that no test detects. Results: docs/carrying-on/mutants.md; `.cargo/mutants.toml` excludes changes without effect.
 
 use crate::disk::make_folder;
 use crate::failure::{Failure, Outcome};
 use crate::run::{run, target_folder};
 use crate::tools::MUTANTS;
 
-/// What protects: which crate, and which of its files.
+/// Safety-relevant crates and their files.
 const GUARDS: [(&str, &[&str]); 2] = [
     (
         "link-protocol",
@@ -30,13 +29,13 @@ const GUARDS: [(&str, &[&str]); 2] = [
     ),
 ];
 
-/// Left out: takes longer than all other tests together, and looks at paths between states, not at these files.
+/// Excluded test: it takes longer than all others together, and checks paths between states, not these files.
 const NOT_FOR_EACH: &str = "brain::model_check";
 
-/// Tries every mutant of one crate's guards, or of all; their lists are under target/mutants.
+/// Tests every mutant of one crate or of all; the lists are under target/mutants.
 ///
 /// # Errors
-/// One survives, or cargo-mutants is not there.
+/// A mutant survives, or cargo-mutants is missing.
 pub(crate) fn hunt(only: Option<&str>, install: bool) -> Outcome {
     let chosen: Vec<_> = GUARDS
         .iter()
@@ -57,19 +56,19 @@ pub(crate) fn hunt(only: Option<&str>, install: bool) -> Outcome {
         for file in *files {
             mutants.args(["--file", file]);
         }
-        // Nobody steps through a mutant, and without the tables that this needs each is linked in half the time.
+        // Mutants are not debugged, and linking without debug information takes half the time.
         mutants.env("CARGO_PROFILE_DEV_DEBUG", "0");
-        // What a property found against one mutant must not be kept in the tree in which the next is tried: it would hide
-        // that only luck found it, and a property that is itself broken would "catch" all that follow.
+        // Failing cases found for one mutant must not be stored for the next one. They would hide that a case was found by
+        // chance, and a wrong property would seem to detect all later mutants.
         mutants.env("PROPTEST_DISABLE_FAILURE_PERSISTENCE", "1");
-        // Each copy builds in a folder of its own; in a shared one, tests of one mutant could run on another's build.
+        // Each copy has its own target folder; in a shared one, tests of one mutant could use the build of another.
         mutants.env_remove("CARGO_TARGET_DIR");
         mutants.args(["--jobs", "2", "--colors", "never"]);
         mutants.args(["--minimum-test-timeout", "60"]);
         mutants.args(["--", "--lib", "--tests", "--", "--skip", NOT_FOR_EACH]);
         run(
             &mut mutants,
-            "mend the tests for each that was missed, or say why it does not matter",
+            "extend the tests for each missed mutant, or document why it does not matter",
         )?;
     }
     Ok(())

@@ -1,4 +1,4 @@
-//! The Python wheel: built, installed into an environment of its own under target/, and tested there.
+//! Python wheel: built, installed into its own environment under target/, and tested there.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,14 +11,14 @@ use crate::run::{command, run, target_folder, works};
 
 /// Packages with exact versions.
 const REQUIREMENTS: &str = "python/requirements.txt";
-/// What the tests need of Python: its version, and what makes environments.
+/// Requirements of the tests: the version of Python and the modules that create environments.
 const ABLE: &str = "import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 11))";
 
-/// Builds, installs and tests the wheel: tests, types, stubs, notebooks. Where Python 3.11 or `PyPI` cannot be had, that is a
-/// failure if it is `required`; else it is said loudly and nothing is tested.
+/// Builds, installs and tests the wheel: tests, types, stubs, notebooks. If Python 3.11 or `PyPI` is not available, this fails if
+/// `required`; otherwise it prints a message and tests nothing.
 ///
 /// # Errors
-/// The first of them that fails.
+/// The first failed step.
 pub(crate) fn test(required: bool) -> Outcome {
     match Environment::find_or_make() {
         Ok(environment) => {
@@ -34,7 +34,7 @@ pub(crate) fn test(required: bool) -> Outcome {
     }
 }
 
-/// An environment of Python with the pinned packages.
+/// Python environment with the pinned packages.
 struct Environment {
     folder: PathBuf,
 }
@@ -46,7 +46,7 @@ impl Environment {
         let environment = Self { folder };
         let wanted = fs::read_to_string(REQUIREMENTS)
             .map_err(|why| failed("reading", Path::new(REQUIREMENTS), why))?;
-        // Written last, so an installation that broke off is begun again.
+        // Written last, so that an interrupted installation is repeated.
         let stamp = environment.folder.join("installed.txt");
         let installed = fs::read_to_string(&stamp).is_ok_and(|installed| installed == wanted);
         if installed && works(environment.python().arg("--version")) {
@@ -74,7 +74,7 @@ impl Environment {
         Ok(environment)
     }
 
-    /// Built as tests are, so that what cargo has already built for them serves again where its features agree.
+    /// Builds with the profile of the tests, so that cargo can reuse their dependencies if the features agree.
     fn install_the_wheel(&self) -> Outcome {
         let wheels = self.folder.join("wheels");
         remove_folder(&wheels)?;
@@ -93,7 +93,7 @@ impl Environment {
             .arg(&wheels)
             .arg("--interpreter")
             .arg(self.interpreter());
-        run(&mut maturin, "mend what the compiler names above")?;
+        run(&mut maturin, "fix what the compiler reports above")?;
         run(
             self.python()
                 .args([
@@ -112,15 +112,15 @@ impl Environment {
 
     fn run_tests(&self) -> Outcome {
         let tests: [(&[&str], &str); 4] = [
-            (&["pytest", "--quiet"], "mend what the tests name above"),
-            (&["mypy"], "mend the types under python/"),
+            (&["pytest", "--quiet"], "fix what the tests report above"),
+            (&["mypy"], "fix the types under python/"),
             (
                 &["mypy.stubtest", "swimmer._swimmer"],
                 "make python/swimmer/_swimmer.pyi say what the extension holds",
             ),
             (
                 &["pytest", "--quiet", "--nbmake", "python/notebooks"],
-                "mend the notebooks",
+                "fix the notebooks",
             ),
         ];
         tests.iter().try_for_each(|(words, next)| {
@@ -128,7 +128,7 @@ impl Environment {
                 self.python()
                     .arg("-m")
                     .args(*words)
-                    // Nothing is written beside the sources.
+                    // Nothing is written next to the sources.
                     .env("PYTHONDONTWRITEBYTECODE", "1")
                     .env("MPLBACKEND", "Agg"),
                 next,
@@ -150,7 +150,7 @@ impl Environment {
 
     fn python(&self) -> Command {
         let mut python = command(self.interpreter());
-        // Another environment that is active in the caller's shell is none of ours.
+        // Ignores an environment that is active in the caller's shell.
         python
             .env_remove("PYTHONPATH")
             .env("VIRTUAL_ENV", self.venv());

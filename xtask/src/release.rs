@@ -1,5 +1,5 @@
-//! `cargo xtask release --dry-run`: what a release would hold, in one folder, with checksums and notes. What cannot be made
-//! yet is named loudly.
+//! `cargo xtask release --dry-run`: writes the content of a release to one folder, with checksums and notes. Parts that cannot be
+//! made yet are named in a message.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ use crate::run::{cargo, command, read, run, target_folder};
 use crate::toolchain::{Target, Toolchain};
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
-/// What the archive of the command holds beside the program and its manual.
+/// Files in the archive of the command, in addition to the program and its manual.
 const PAPERS: [&str; 5] = [
     "README.md",
     "CHANGELOG.md",
@@ -23,13 +23,13 @@ const PAPERS: [&str; 5] = [
     "LICENSE-MIT",
     "LICENSE-APACHE",
 ];
-/// Times in archives: none, so that the same sources give the same bytes.
+/// Fixed time in archives, so that equal sources give equal bytes.
 const EPOCH: &str = "--mtime=@0";
 
 /// Makes everything under `target/release-dry-run`.
 ///
 /// # Errors
-/// It is no dry run, or a part that can be made cannot.
+/// `dry_run` is `false`, or a part cannot be made.
 pub(crate) fn prepare(dry_run: bool) -> Outcome {
     if !dry_run {
         return Err(Failure::new(
@@ -58,9 +58,9 @@ pub(crate) fn prepare(dry_run: bool) -> Outcome {
     Ok(())
 }
 
-/// The command for this platform, with its manual pages and completions.
+/// Archive of the command for this platform, with its manual pages and completions.
 fn command_archive(target: &Path, folder: &Path) -> Outcome {
-    let next = "mend what the compiler names above";
+    let next = "fix what the compiler reports above";
     run(&mut cargo(["build", "--release", "-p", "swimmer"]), next)?;
     let rustc = read(command("rustc").arg("-vV"), "check `rustc -vV`")?;
     let host = host(&rustc)?;
@@ -102,13 +102,13 @@ fn command_archive(target: &Path, folder: &Path) -> Outcome {
     remove_folder(&stage)
 }
 
-/// The platform that `rustc -vV` names.
+/// Platform in the output of `rustc -vV`.
 fn host(version: &str) -> Outcome<&str> {
     let line = version.lines().find_map(|line| line.strip_prefix("host: "));
     line.ok_or_else(|| Failure::new("reading `rustc -vV`", "it names no host", "run it by hand"))
 }
 
-/// The firmware of both boards as it goes onto their drives.
+/// UF2 files of both boards.
 fn images(target: &Path, folder: &Path) -> Outcome {
     let toolchain = Toolchain::find_or_make(Target::Chip)?;
     for board in Board::ALL {
@@ -126,7 +126,7 @@ fn images(target: &Path, folder: &Path) -> Outcome {
     Ok(())
 }
 
-/// The Python wheel, built as pip builds it.
+/// Python wheel, built by pip.
 fn wheel(folder: &Path, missing: &mut Vec<&'static str>) -> Outcome {
     if !Path::new("pyproject.toml").is_file() {
         missing.push("the Python wheel: there is no pyproject.toml");
@@ -141,17 +141,17 @@ fn wheel(folder: &Path, missing: &mut Vec<&'static str>) -> Outcome {
             .args(["-m", "pip", "wheel", "--no-deps", "--quiet", "-w"])
             .arg(folder)
             .arg("."),
-        "mend what pip or maturin name above",
+        "fix what pip or maturin reports above",
     )
 }
 
-/// The page for a browser.
+/// Lab page.
 fn lab_page(folder: &Path) -> Outcome {
     let page = lab::build()?;
     copy(&page, &folder.join(format!("swimmer-lab-{VERSION}.html")))
 }
 
-/// What the changelog says under `[Unreleased]`.
+/// Section `[Unreleased]` of the changelog.
 fn notes(changelog: &str) -> Outcome<String> {
     let start = changelog.find("## [Unreleased]");
     let section = start
@@ -173,7 +173,7 @@ fn notes(changelog: &str) -> Outcome<String> {
     Ok(format!("# swimmer {VERSION}\n\n{}\n", body.trim()))
 }
 
-/// A line for each file, as `sha256sum` writes it.
+/// One line per file in the format of `sha256sum`.
 fn checksums(folder: &Path) -> Outcome<String> {
     let mut sums = String::new();
     let files: Vec<PathBuf> = entries(folder, |_| true)?;

@@ -1,4 +1,4 @@
-//! Runs other programs: shows the command line, passes output through, and turns a bad exit into a [`Failure`].
+//! Execution of other programs: prints the command line, passes output through, and converts an error exit into a [`Failure`].
 
 use std::ffi::OsStr;
 use std::path::PathBuf;
@@ -7,10 +7,10 @@ use std::time::{Duration, Instant};
 
 use crate::failure::{Failure, Outcome};
 
-/// Variables that `cargo run` set for xtask alone; a nested cargo must not take them for its own.
+/// Variables that `cargo run` sets for xtask only; a nested cargo must not see them.
 const OF_THE_OUTER_CARGO: [&str; 2] = ["CARGO_PKG_", "CARGO_MANIFEST_"];
 
-/// A command for a child of xtask: rustup never downloads behind our back, and nothing of the outer `cargo run` leaks in.
+/// Command for a child process: rustup does not download anything, and the variables of the outer `cargo run` are removed.
 pub(crate) fn command(program: impl AsRef<OsStr>) -> Command {
     let mut command = Command::new(program);
     command.env("RUSTUP_AUTO_INSTALL", "0");
@@ -26,17 +26,17 @@ pub(crate) fn command(program: impl AsRef<OsStr>) -> Command {
     command
 }
 
-/// The cargo that runs xtask (or the one in PATH), with these arguments.
+/// Command of the cargo that runs xtask (or of the one in PATH), with these arguments.
 pub(crate) fn cargo<const N: usize>(arguments: [&str; N]) -> Command {
     let mut cargo = command(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.args(arguments);
     cargo
 }
 
-/// Runs the command with its output passed through.
+/// Runs the command and passes its output through.
 ///
 /// # Errors
-/// When it cannot be started or exits badly; `next` tells the reader what to do then.
+/// It cannot be started or fails; `next` is the next step for the user.
 pub(crate) fn run(command: &mut Command, next: &str) -> Outcome {
     let line = command_line(command);
     eprintln!("$ {line}");
@@ -51,10 +51,10 @@ pub(crate) fn run(command: &mut Command, next: &str) -> Outcome {
     }
 }
 
-/// The same, ended where it takes longer than `patience`.
+/// Like [`run`], but ends the command after `patience`.
 ///
 /// # Errors
-/// As [`run`], and when it was ended.
+/// As [`run`]; the command took too long.
 pub(crate) fn run_for(patience: Duration, command: &mut Command, next: &str) -> Outcome {
     let line = command_line(command);
     eprintln!("$ {line}");
@@ -75,10 +75,10 @@ pub(crate) fn run_for(patience: Duration, command: &mut Command, next: &str) -> 
     }
 }
 
-/// Runs the command quietly and returns what it printed on stdout.
+/// Runs the command quietly and returns its standard output.
 ///
 /// # Errors
-/// When it cannot be started or exits badly; its stderr is part of the reason.
+/// It cannot be started or fails; its standard error is part of the reason.
 pub(crate) fn read(command: &mut Command, next: &str) -> Outcome<String> {
     let line = command_line(command);
     let doing = || format!("running `{line}`");
@@ -98,7 +98,7 @@ pub(crate) fn read(command: &mut Command, next: &str) -> Outcome<String> {
     }
 }
 
-/// Whether the command can be started and exits well; prints nothing.
+/// Returns `true` if the command starts and succeeds; prints nothing.
 pub(crate) fn works(command: &mut Command) -> bool {
     command
         .stdin(Stdio::null())
@@ -108,7 +108,7 @@ pub(crate) fn works(command: &mut Command) -> bool {
         .is_ok_and(|status| status.success())
 }
 
-/// Cargo's output folder, whatever the user's configuration says.
+/// Target folder of cargo, with the user's configuration taken into account.
 pub(crate) fn target_folder() -> Outcome<PathBuf> {
     let next = "run `cargo metadata` by hand to see why";
     let metadata = read(
@@ -129,7 +129,7 @@ pub(crate) fn target_folder() -> Outcome<PathBuf> {
         })
 }
 
-/// The command as one would type it, with the variables that were set for it (without the constant one).
+/// Command line for display, with the variables that were set for it (except the constant one).
 pub(crate) fn command_line(command: &Command) -> String {
     let variables = command.get_envs().filter_map(|(name, value)| {
         let (name, value) = (name.to_str()?, value?.to_str()?);

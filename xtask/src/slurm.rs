@@ -1,4 +1,4 @@
-//! Debian's Slurm, unpacked into a folder of our own for the test of job arrays: nothing is installed, and no root is asked for.
+//! Debian's Slurm for the test of job arrays, unpacked into a folder under `target`. Nothing is installed, and root is not needed.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +7,7 @@ use crate::disk::{entries, make_folder, remove_folder};
 use crate::failure::{Failure, Outcome};
 use crate::run::{command, read, run, target_folder};
 
-/// The programs; what these need beyond them is looked up.
+/// Packages of the programs; their dependencies are resolved by apt.
 const PACKAGES: [&str; 4] = [
     "slurmctld",
     "slurmd",
@@ -15,10 +15,10 @@ const PACKAGES: [&str; 4] = [
     "slurm-wlm-basic-plugins",
 ];
 
-/// Downloads and unpacks it, where it is not there yet.
+/// Downloads and unpacks Slurm if it is missing.
 ///
 /// # Errors
-/// Off Debian, without package lists, or when a download fails.
+/// The system is not Debian, has no package lists, or a download fails.
 pub(crate) fn unpack() -> Outcome {
     let prefix = std::path::absolute(target_folder()?.join("slurm"))
         .unwrap_or_else(|_| PathBuf::from("target/slurm"));

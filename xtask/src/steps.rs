@@ -1,10 +1,10 @@
-//! A list of steps with a banner and the wall time of each, and a summary at the end.
+//! Sequence of steps, each with a banner and its wall time, and a summary at the end.
 
 use std::time::{Duration, Instant};
 
 use crate::failure::{Failure, Outcome};
 
-/// Steps taken so far.
+/// Completed steps.
 #[derive(Default)]
 pub(crate) struct Steps {
     taken: Vec<Step>,
@@ -17,7 +17,7 @@ struct Step {
 }
 
 impl Steps {
-    /// Takes one step; where it fails there is nothing to go on with for those that need its result.
+    /// Runs a step. Returns `None` if it fails; steps that need its result must then be skipped.
     pub(crate) fn take<T>(&mut self, name: &str, step: impl FnOnce() -> Outcome<T>) -> Option<T> {
         println!("\n==== {name} ====");
         let start = Instant::now();
@@ -37,7 +37,7 @@ impl Steps {
         result
     }
 
-    /// One line a step.
+    /// Summary with one line per step.
     pub(crate) fn summary(&self) -> String {
         let mut lines = String::new();
         for step in &self.taken {
@@ -51,7 +51,7 @@ impl Steps {
         lines + &line("all steps", self.taken.iter().map(|step| step.wall).sum())
     }
 
-    /// Fails where a step failed, with all that failed.
+    /// Returns an error if a step failed.
     ///
     /// # Errors
     /// The failures of all steps.
@@ -69,7 +69,7 @@ impl Steps {
         Err(Failure::new(
             format!("testing: {} of {count} steps failed", failures.len()),
             format!("\n\n{}\n", why.join("\n\n")),
-            "repeat the command when they are mended",
+            "repeat the command after fixing them",
         ))
     }
 }

@@ -1,5 +1,5 @@
-//! Finds a compiler for a target that is not this machine, the chip or the page: the active toolchain where it has the target
-//! or rustup can fetch it, Debian's `rustc-web` where it cannot.
+//! Compilers for the chip and the lab page: the active toolchain if it has the target or rustup can fetch it, otherwise Debian's
+//! `rustc-web`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use crate::run::{cargo, command, read};
 mod fallback;
 mod rustup;
 
-/// Where code of ours runs beside this machine.
+/// Target other than this machine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Target {
     /// The RP2040's Cortex-M0+.
@@ -21,7 +21,7 @@ pub(crate) enum Target {
 }
 
 impl Target {
-    /// As rustc calls it.
+    /// Target triple of rustc.
     pub(crate) const fn triple(self) -> &'static str {
         match self {
             Self::Chip => "thumbv6m-none-eabi",
@@ -29,7 +29,7 @@ impl Target {
         }
     }
 
-    /// The workspace's profile for it.
+    /// Cargo profile of the target.
     const fn profile(self) -> &'static str {
         match self {
             Self::Chip => "firmware",
@@ -37,7 +37,7 @@ impl Target {
         }
     }
 
-    /// The crates of the standard library that our code for it stands on.
+    /// Crates of the standard library that our code for the target uses.
     const fn library(self) -> &'static str {
         match self {
             Self::Chip => "core,alloc",
@@ -57,7 +57,7 @@ impl Target {
         }
     }
 
-    /// Arguments of cargo that build the library with what stands on it.
+    /// Arguments of cargo that build the standard library together with our crates.
     fn own_library(self) -> Vec<String> {
         let crates = format!("-Zbuild-std={}", self.library());
         match self {
@@ -66,7 +66,7 @@ impl Target {
         }
     }
 
-    /// Whether a toolchain has what code for it is compiled with: the target's library, or the sources of one that suits the page.
+    /// Returns `true` if a toolchain can compile for the target: it has the library, or for the page its sources.
     fn is_served_by(self, sysroot: &Path) -> bool {
         match self {
             Self::Chip => has_core(sysroot, self),
@@ -77,26 +77,26 @@ impl Target {
     }
 }
 
-/// How to compile for a target.
+/// Compiler for a target.
 #[derive(Debug)]
 pub(crate) struct Toolchain {
     target: Target,
-    /// A private prefix made from Debian's packages; none where the active toolchain has the target.
+    /// Private prefix made from Debian packages; `None` if the active toolchain has the target.
     prefix: Option<PathBuf>,
 }
 
 impl Toolchain {
-    /// Finds or makes it; the second time it only finds it.
+    /// Finds the compiler, or makes it.
     ///
     /// # Errors
-    /// When the active toolchain lacks the target, rustup cannot fetch it and Debian's packages are out of reach; the message
-    /// has the command.
+    /// The active toolchain lacks the target, rustup cannot fetch it, and Debian packages are not available. The message has the
+    /// command to run.
     pub(crate) fn find_or_make(target: Target) -> Outcome<Self> {
         let prefix = find_or_make_prefix(target)?;
         Ok(Self { target, prefix })
     }
 
-    /// `cargo SUBCOMMAND --target …`, in the target's own profile.
+    /// `cargo SUBCOMMAND --target …` with the profile of the target.
     pub(crate) fn cargo(&self, subcommand: &str) -> Command {
         let (triple, profile) = (self.target.triple(), self.target.profile());
         let mut cargo = cargo([subcommand, "--target", triple, "--profile", profile]);
@@ -127,7 +127,7 @@ impl Toolchain {
                 self.cargo("clippy")
             }
             Some(prefix) => {
-                // cargo-clippy would pick the active toolchain's driver; this is what it does, with the right one.
+                // cargo-clippy would use the driver of the active toolchain; this does the same with the right driver.
                 let mut check = self.cargo("check");
                 check.env("RUSTC_WORKSPACE_WRAPPER", prefix.join("bin/clippy-driver"));
                 check.env(
@@ -139,7 +139,7 @@ impl Toolchain {
         }
     }
 
-    /// Flags for [`Self::clippy`] that stand at the end of its command line.
+    /// Flags for the end of the command line of [`Self::clippy`].
     pub(crate) fn clippy_flags(&self) -> &'static [&'static str] {
         match self.prefix {
             None => &["--", "-D", "warnings"],
@@ -147,7 +147,7 @@ impl Toolchain {
         }
     }
 
-    /// One line for the reader.
+    /// Description in one line.
     pub(crate) fn describe(&self) -> String {
         let triple = self.target.triple();
         match &self.prefix {
@@ -174,11 +174,11 @@ fn find_or_make_prefix(target: Target) -> Outcome<Option<PathBuf>> {
     fallback::make(&compiler, target).map(Some)
 }
 
-/// The compiler that cargo uses for the host.
+/// Compiler that cargo uses for the host.
 #[derive(Debug)]
 struct HostCompiler {
     sysroot: PathBuf,
-    /// Its target triple, such as `x86_64-unknown-linux-gnu`.
+    /// Target triple, such as `x86_64-unknown-linux-gnu`.
     triple: String,
 }
 
@@ -208,7 +208,7 @@ fn host_triple(verbose_version: &str) -> Option<&str> {
         .map(str::trim)
 }
 
-/// Whether a sysroot holds `core` for the target.
+/// Returns `true` if a sysroot has `core` for the target.
 fn has_core(sysroot: &Path, target: Target) -> bool {
     fs::read_dir(library_folder(sysroot, target)).is_ok_and(|entries| {
         entries.flatten().any(|entry| {
@@ -219,7 +219,7 @@ fn has_core(sysroot: &Path, target: Target) -> bool {
     })
 }
 
-/// Where a sysroot keeps its libraries for the target.
+/// Folder of a sysroot with the libraries for the target.
 fn library_folder(sysroot: &Path, target: Target) -> PathBuf {
     sysroot
         .join("lib/rustlib")

@@ -1,4 +1,4 @@
-//! Tools for chores that no change waits for: looked for in PATH and under target/tools, installed there only where asked.
+//! Tools of optional chores: found in PATH or under target/tools, and installed there on request.
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -7,36 +7,36 @@ use std::process::Command;
 use crate::failure::{Failure, Outcome};
 use crate::run::{command, run, target_folder, works};
 
-/// A program that cargo installs.
+/// Program that cargo installs.
 #[derive(Clone, Copy)]
 pub(crate) struct Tool {
-    /// Its package, `cargo-something`.
+    /// Package, `cargo-something`.
     package: &'static str,
-    /// The version these chores were tried with.
+    /// Version with which the chores were tested.
     version: &'static str,
 }
 
-/// Holds the dependencies against deny.toml.
+/// Checks the dependencies against deny.toml.
 pub(crate) const DENY: Tool = Tool {
     package: "cargo-deny",
     version: "0.20.2",
 };
-/// Breaks the code in many small ways and counts what no test notices.
+/// Mutates the code and counts the changes that no test detects.
 pub(crate) const MUTANTS: Tool = Tool {
     package: "cargo-mutants",
     version: "27.1.0",
 };
-/// Tells stories to the decoder, the brain, the session and the readers.
+/// Fuzzes the decoder, the brain, the session and the readers.
 pub(crate) const FUZZ: Tool = Tool {
     package: "cargo-fuzz",
     version: "0.13.2",
 };
 
 impl Tool {
-    /// A `cargo` that finds the tool, with its name as the first argument.
+    /// Returns a `cargo` command that finds the tool, with the tool's name as its first argument.
     ///
     /// # Errors
-    /// It is not installed and was not to be: the command that installs it is named.
+    /// The tool is missing and `install` is `false`; the message names the command that installs it.
     pub(crate) fn cargo(self, install: bool) -> Outcome<Command> {
         let tools = target_folder()?.join("tools");
         let path = search_path(&tools)?;
@@ -75,5 +75,5 @@ fn search_path(tools: &std::path::Path) -> Outcome<OsString> {
     let path = std::env::var_os("PATH").unwrap_or_default();
     let folders = std::iter::once(tools.join("bin")).chain(std::env::split_paths(&path));
     std::env::join_paths(folders.collect::<Vec<PathBuf>>())
-        .map_err(|why| Failure::new("naming the folder of tools", why, "mend PATH"))
+        .map_err(|why| Failure::new("naming the folder of tools", why, "correct PATH"))
 }

@@ -1,4 +1,4 @@
-//! Follows every link of the finished book that leads to another page or place of it; what leads elsewhere is only counted.
+//! Checks every link of the finished book to its own pages and anchors; external links are only counted.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 use crate::failure::{Failure, Outcome};
 use crate::path::joined;
 
-/// Follows the links of every page below a folder, and says how many there were.
+/// Checks the links of every page below a folder. Returns their number.
 ///
 /// # Errors
-/// Links that lead nowhere, all of them.
+/// All broken links.
 pub(crate) fn follow_links(folder: &Path) -> Outcome<usize> {
     let mut files = BTreeSet::new();
     let mut pages = BTreeMap::new();
@@ -37,7 +37,7 @@ fn dead_links(files: &BTreeSet<String>, pages: &BTreeMap<String, String>) -> (us
     for (page, text) in pages {
         for target in values(text, "href").chain(values(text, "src")) {
             let outside = ["http:", "https:", "mailto:", "data:", "javascript:"];
-            // mdBook's page for what is not found links from the site's root.
+            // mdBook's "not found" page links from the root of the site.
             if target.is_empty()
                 || page == "404.html"
                 || outside.iter().any(|kind| target.starts_with(kind))
@@ -64,7 +64,7 @@ fn dead_links(files: &BTreeSet<String>, pages: &BTreeMap<String, String>) -> (us
     (seen, dead)
 }
 
-/// The values of an attribute, quoted in either way.
+/// Values of an attribute, in single or double quotes.
 fn values<'a>(html: &'a str, attribute: &str) -> impl Iterator<Item = &'a str> {
     let written = format!(" {attribute}=");
     let places: Vec<usize> = html

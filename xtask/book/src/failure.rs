@@ -1,6 +1,6 @@
-//! What can go wrong: what was being done, and why it did not work.
+//! Error of the book builder: the failed step and its reason.
 
-/// One sentence for whoever builds the book.
+/// Failed step and its reason.
 #[derive(Debug, thiserror::Error)]
 #[error("{doing}: {why}")]
 pub(crate) struct Failure {
@@ -8,7 +8,7 @@ pub(crate) struct Failure {
     why: String,
 }
 
-/// The result of every step.
+/// Result of a step.
 pub(crate) type Outcome<T = ()> = Result<T, Failure>;
 
 impl Failure {
@@ -19,7 +19,7 @@ impl Failure {
         }
     }
 
-    /// Several of one kind, each on a line.
+    /// Combines failures of one kind, one per line.
     pub(crate) fn all(doing: impl Into<String>, whys: &[String]) -> Outcome {
         if whys.is_empty() {
             return Ok(());

@@ -1,4 +1,4 @@
-//! Formulas become HTML while the book is built (`KaTeX`, run by `Node.js`), so that a page needs no script and no network.
+//! Conversion of formulas to HTML at build time (`KaTeX`, run by `Node.js`), so that a page needs neither scripts nor a network.
 
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -9,15 +9,15 @@ use crate::failure::{Failure, Outcome};
 use crate::markdown::{formulas, replaced};
 use crate::stage::Page;
 
-/// Where npm put `KaTeX`, seen from the root.
+/// Path of `KaTeX` as npm installs it, from the root.
 const KATEX: &str = "xtask/book/node_modules/katex/dist";
-/// Letters are taken in this form only, which every browser of the last ten years reads.
+/// Format of the copied fonts; every browser of the last ten years supports it.
 const LETTERS: &str = "woff2";
 const SCRIPT: &str = "xtask/book/katex.mjs";
-/// What a formula begins with once it is set.
+/// First characters of a converted formula.
 const MARK: &str = "<span class=\"katex";
 
-/// Sets the formulas of all pages, in one run of Node.js.
+/// Converts the formulas of all pages in one run of Node.js.
 pub(crate) fn set(root: &Path, pages: &mut [Page]) -> Outcome {
     let found: Vec<Vec<_>> = pages.iter().map(|page| formulas(&page.text)).collect();
     let asked: Vec<_> = found
@@ -43,13 +43,13 @@ pub(crate) fn set(root: &Path, pages: &mut [Page]) -> Outcome {
     Ok(())
 }
 
-/// How many formulas stand in the pages.
+/// Number of formulas in the pages.
 pub(crate) fn count(pages: &[Page]) -> usize {
     let of = |page: &Page| page.text.matches("<math ").count();
     pages.iter().map(of).sum()
 }
 
-/// Letters and their rules, beside the pages.
+/// Copies fonts and style sheet of `KaTeX` next to the pages.
 pub(crate) fn copy_style(root: &Path, pages: &Path) -> Outcome {
     let (from, to) = (root.join(KATEX), pages.join("katex"));
     let failed = |why: std::io::Error| Failure::new("copying KaTeX's letters", why);
@@ -98,7 +98,7 @@ fn run(root: &Path, asked: &str) -> Outcome<String> {
     String::from_utf8(output.stdout).map_err(|why| failed(&why))
 }
 
-/// HTML in which Markdown sees no mark of its own.
+/// Escapes the characters of HTML that Markdown would interpret.
 fn harmless(html: &str) -> String {
     debug_assert!(html.starts_with(MARK));
     let mut out = String::with_capacity(html.len());

@@ -1,7 +1,7 @@
-//! Builds the book: gathers the pages that `docs/SUMMARY.md` names where they lie, sets their formulas, turns links to source
-//! code into links to numbered lines, lets mdBook make HTML of it, and follows every link of that. `cargo xtask book` runs it.
+//! Builds the book; `cargo xtask book` runs it. Collects the pages that `docs/SUMMARY.md` lists, typesets their formulas, replaces
+//! links to source code by links to numbered lines, generates HTML with mdBook, and checks every link of the result.
 //!
-//! A package of its own, because mdBook brings a hundred crates and `cargo xtask` shall be there at once.
+//! It is a package of its own because mdBook depends on a hundred crates, which would delay every `cargo xtask`.
 
 mod check;
 mod failure;
@@ -20,7 +20,7 @@ use mdbook_driver::config::Config;
 use failure::{Failure, Outcome};
 use stage::Staged;
 
-/// Where the pages are gathered before they become HTML, below the output folder's parent.
+/// Folder of the collected pages, next to the output folder.
 const STAGE: &str = "book-pages";
 
 fn main() -> ExitCode {
@@ -38,7 +38,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Builds the book of the checkout at `root`, and says what there is.
+/// Builds the book of the checkout at `root`. Returns a summary for the user.
 fn build(root: &Path, output: &Path) -> Outcome<String> {
     let pages = output.with_file_name(STAGE);
     empty(&pages)?;
@@ -59,7 +59,7 @@ fn build(root: &Path, output: &Path) -> Outcome<String> {
     ))
 }
 
-/// Lets mdBook make HTML of the gathered pages.
+/// Generates HTML from the collected pages with mdBook.
 fn render(pages: &Path, output: &Path) -> Outcome {
     let failed = |why: String| Failure::new("making HTML of the pages", why);
     let absolute = |path: &Path| {
@@ -79,7 +79,7 @@ fn render(pages: &Path, output: &Path) -> Outcome {
     book.build().map_err(|why| failed(format!("{why:#}")))
 }
 
-/// A folder with nothing in it.
+/// Creates a folder or empties an existing one.
 fn empty(folder: &Path) -> Outcome {
     let failed = |why: std::io::Error| Failure::new(format!("emptying {}", folder.display()), why);
     if folder.exists() {

@@ -1,17 +1,17 @@
-//! What a page asks for beyond its words: links, pictures and formulas, each with its place in the text.
+//! Parser of the links, pictures and formulas of a page, with their positions in the text.
 
 use std::ops::Range;
 
 use pulldown_cmark::{Event, LinkType, Options, Parser, Tag};
 
-/// A link or picture: where its target stands in the text, and the target.
+/// Link or picture: its target and the range of the target in the text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Link {
     pub(crate) range: Range<usize>,
     pub(crate) target: String,
 }
 
-/// A formula: where it stands, what it says.
+/// Formula: its range in the text and its content.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Formula {
     pub(crate) range: Range<usize>,
@@ -19,7 +19,7 @@ pub(crate) struct Formula {
     pub(crate) display: bool,
 }
 
-/// Every link and picture written in line; `<img src="…">` too, which a README needs for sizes.
+/// Inline links and pictures, and `<img src="…">`, which a README needs for sizes.
 pub(crate) fn links(text: &str) -> Vec<Link> {
     let mut links = Vec::new();
     for (event, range) in parser(text).into_offset_iter() {
@@ -75,7 +75,7 @@ fn place_of(
     })
 }
 
-/// Every formula, `$in line$` or `$$on lines of its own$$`.
+/// Formulas, `$inline$` or `$$displayed$$`.
 pub(crate) fn formulas(text: &str) -> Vec<Formula> {
     let formulas = parser(text).into_offset_iter();
     formulas
@@ -92,7 +92,7 @@ pub(crate) fn formulas(text: &str) -> Vec<Formula> {
         .collect()
 }
 
-/// The text with other words at some places, which are in order and do not overlap.
+/// Returns the text with some ranges replaced. The ranges are in order and do not overlap.
 pub(crate) fn replaced(text: &str, changes: &[(Range<usize>, String)]) -> String {
     let mut out = String::with_capacity(text.len());
     let mut end = 0;

@@ -1,6 +1,6 @@
 //! Paths inside the checkout, written with `/`, without `.` and `..`.
 
-/// Where a link in a page leads, seen from the root; nothing where it leaves the checkout.
+/// Target of a link in a page, from the root. Returns `None` if it is outside the checkout.
 pub(crate) fn joined(page: &str, link: &str) -> Option<String> {
     let mut parts: Vec<&str> = page.split('/').collect();
     parts.pop();
@@ -16,7 +16,7 @@ pub(crate) fn joined(page: &str, link: &str) -> Option<String> {
     Some(parts.join("/"))
 }
 
-/// A link from one page to another place, both seen from the root.
+/// Relative link from one page to another file, both given from the root.
 pub(crate) fn relative(page: &str, place: &str) -> String {
     let up = page.matches('/').count();
     format!("{}{place}", "../".repeat(up))

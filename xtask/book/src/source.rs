@@ -1,5 +1,5 @@
-//! Source code as pages with numbered lines, for what the book links to; an item is found by its name, so that a link does not
-//! grow stale as lines move.
+//! Pages of source code with numbered lines, as targets of the book's links. Links name items instead of lines, so they stay valid
+//! if lines move.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
@@ -9,10 +9,10 @@ use std::process::Command;
 use crate::failure::{Failure, Outcome};
 use crate::stage::{read, write};
 
-/// Files that the book shows, seen from the root.
+/// Source files that the book shows, from the root.
 pub(crate) type Sources = BTreeSet<String>;
 
-/// Words before the name of an item in Rust, and before a heading or a function in other files.
+/// Words before the name of an item in Rust, or before a heading or a function in other files.
 const BEFORE: [&str; 9] = [
     "fn ",
     "struct ",
@@ -25,10 +25,10 @@ const BEFORE: [&str; 9] = [
     "function ",
 ];
 
-/// The line, from 1, on which an item is declared: `name`, or `Type::name` for the one below `impl Type` or `enum Type`.
+/// Line (from 1) of the declaration of an item: `name`, or `Type::name` for a member of `impl Type` or `enum Type`.
 ///
 /// # Errors
-/// It is not there, or more than once.
+/// The item is missing or ambiguous.
 pub(crate) fn line_of(text: &str, item: &str) -> Result<usize, String> {
     let lines: Vec<&str> = text.lines().collect();
     let found: Vec<usize> = if let Some((within, name)) = item.split_once("::") {
@@ -47,7 +47,7 @@ pub(crate) fn line_of(text: &str, item: &str) -> Result<usize, String> {
     }
 }
 
-/// Whether a line declares something of this name.
+/// Returns `true` if a line declares an item of this name.
 fn declares(line: &str, name: &str) -> bool {
     BEFORE.iter().any(|word| {
         line.match_indices(word).any(|(at, _)| {
@@ -59,7 +59,7 @@ fn declares(line: &str, name: &str) -> bool {
     })
 }
 
-/// The line of a member of a type: what one of its `impl`s declares, or a field or variant of its own declaration.
+/// Line of a member of a type: declared by an `impl`, or a field or variant of the type.
 fn member(lines: &[&str], within: &str, name: &str) -> Option<usize> {
     let opens = |line: &str| {
         let mut words = line.split(|letter: char| !is_of_a_name(letter));
@@ -81,7 +81,7 @@ fn member(lines: &[&str], within: &str, name: &str) -> Option<usize> {
     fields
 }
 
-/// Whether a line is the field or variant of this name.
+/// Returns `true` if a line is the field or variant of this name.
 fn is_field(line: &str, name: &str) -> bool {
     let Some(line) = line.strip_prefix("    ") else {
         return false;
@@ -96,10 +96,10 @@ fn is_of_a_name(letter: char) -> bool {
     letter.is_alphanumeric() || letter == '_'
 }
 
-/// Files under version control below a folder.
+/// Version-controlled files below a folder.
 ///
 /// # Errors
-/// Git does not answer.
+/// Git fails.
 pub(crate) fn files_below(root: &Path, folder: &str) -> Outcome<Vec<String>> {
     let failed = |why: &dyn std::fmt::Display| {
         Failure::new(format!("listing the files of {folder} with git"), why)
@@ -120,7 +120,7 @@ pub(crate) fn files_below(root: &Path, folder: &str) -> Outcome<Vec<String>> {
         .collect())
 }
 
-/// Files that can be read as a page.
+/// Returns `true` if a file can be shown as a page.
 fn is_text(path: &str) -> bool {
     let endings = [
         ".rs", ".toml", ".md", ".mjs", ".trycmd", ".x", ".json", ".css", ".snap", ".py", ".pyi",
@@ -129,7 +129,7 @@ fn is_text(path: &str) -> bool {
     endings.iter().any(|ending| path.ends_with(ending))
 }
 
-/// Writes a page for each file, and a list for each folder.
+/// Writes a page for each file and a list for each folder.
 ///
 /// # Errors
 /// A file cannot be read or written.

@@ -1,5 +1,5 @@
-//! Gathers the pages that `docs/SUMMARY.md` names, each where it lies in the checkout, and turns their links to files that are no
-//! pages into links to numbered lines of source.
+//! Collects the pages that `docs/SUMMARY.md` lists, from anywhere in the checkout. Replaces their links to other files by links to
+//! numbered lines of source.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -10,21 +10,21 @@ use crate::path::{joined, relative};
 use crate::source::{self, Sources};
 
 const SUMMARY: &str = "docs/SUMMARY.md";
-/// The page that mdBook makes of it.
+/// Page that mdBook generates from the summary.
 const CONTENTS: &str = "toc.html";
 const STYLE: &str = "docs/book.css";
-/// Files that a page shows rather than links to.
+/// Suffixes of files that a page displays.
 const PICTURES: [&str; 4] = [".png", ".gif", ".svg", ".jpg"];
 
-/// One page.
+/// Page of the book.
 #[derive(Debug)]
 pub(crate) struct Page {
-    /// Where it lies, seen from the root.
+    /// Path from the root.
     pub(crate) path: String,
     pub(crate) text: String,
 }
 
-/// Everything that mdBook is given, and what is added beside its pages.
+/// Input of mdBook, and the source files that are added to its output.
 #[derive(Debug)]
 pub(crate) struct Staged {
     pub(crate) pages: Vec<Page>,
@@ -34,7 +34,7 @@ pub(crate) struct Staged {
 }
 
 impl Staged {
-    /// Reads the pages and follows what they link to.
+    /// Reads the pages and resolves their links.
     pub(crate) fn gather(root: &Path) -> Outcome<Self> {
         let summary = read(root, SUMMARY)?;
         let mut paths = Vec::new();
@@ -76,7 +76,7 @@ impl Staged {
         Ok(staged)
     }
 
-    /// What a link becomes, where it becomes something else.
+    /// Replacement of a link. Returns `None` if the link stays as it is.
     fn followed(
         &mut self,
         root: &Path,
@@ -126,7 +126,7 @@ impl Staged {
         Ok(Some(match item {
             Some(item) => {
                 let line = source::line_of(&text, item).map_err(|why| lost(&why))?;
-                // What stands after the address is told to a pointer that rests on the link.
+                // The text after the address becomes the tooltip of the link.
                 format!("{shown}#L{line} \"{place}:{line}\"")
             }
             None => shown,
@@ -149,13 +149,13 @@ impl Staged {
     }
 }
 
-/// A file of the checkout.
+/// Reads a file of the checkout.
 pub(crate) fn read(root: &Path, path: &str) -> Outcome<String> {
     std::fs::read_to_string(root.join(path))
         .map_err(|why| Failure::new(format!("reading {path}"), why))
 }
 
-/// Writes a file and the folders above it.
+/// Writes a file and creates its parent folders.
 pub(crate) fn write(folder: &Path, path: &str, bytes: &[u8]) -> Outcome {
     let place = folder.join(path);
     let failed = |why: std::io::Error| Failure::new(format!("writing {}", place.display()), why);

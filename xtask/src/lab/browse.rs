@@ -1,4 +1,4 @@
-//! The page's tests: the module against the command under node, the page in Chromium and in Firefox.
+//! Tests of the lab page: the module compared with the command in node, and the page in Chromium and Firefox.
 
 use std::path::Path;
 
@@ -8,17 +8,17 @@ use crate::disk::entries;
 use crate::failure::{Failure, Outcome};
 use crate::run::{cargo, command, run, target_folder};
 
-/// Programs of the browsers, and their Debian packages.
+/// Browsers and their Debian packages.
 const BROWSERS: [(&str, &str); 2] = [("chromium", "chromium"), ("firefox-esr", "firefox-esr")];
 
-/// Builds the page and the command, and runs what `tests/` holds. Where a browser cannot be had, its tests are left out loudly,
-/// unless they are required.
+/// Builds the page and the command, and runs the tests in `tests/`. If a browser is not available, its tests are skipped with a
+/// message, unless they are `required`.
 ///
 /// # Errors
-/// The page cannot be built, a test fails, or a browser that is required cannot be had.
+/// The page cannot be built, a test fails, or a required browser is not available.
 pub(crate) fn test(required: bool) -> Outcome {
     build()?;
-    let next = "mend what the compiler names above";
+    let next = "fix what the compiler reports above";
     run(&mut cargo(["build", "--quiet", "-p", "swimmer"]), next)?;
     let tests = entries(&Path::new(PAGE).join("tests"), |name| {
         name.ends_with(".test.mjs")
@@ -38,16 +38,16 @@ pub(crate) fn test(required: bool) -> Outcome {
         .map(|name| format!("tests/{name}"));
     run(
         command("node")
-            // One file at a time: each has browsers of its own, and they measure times.
+            // One file at a time: each starts its own browsers, and some measure times.
             .args(["--test", "--test-concurrency=1", "--test-reporter=spec"])
             .args(names)
             .env("LAB_TARGET", target_folder()?)
             .current_dir(PAGE),
-        "mend what the tests name above; pictures lie in target/lab/screenshots",
+        "fix what the tests report above; pictures are in target/lab/screenshots",
     )
 }
 
-/// Prints how long the page takes for what follows a hand.
+/// Prints the response times of the page while a gait is dragged.
 ///
 /// # Errors
 /// The page cannot be built or opened.

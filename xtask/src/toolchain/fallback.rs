@@ -1,4 +1,4 @@
-//! A target's compiler for a Debian machine whose rustup cannot fetch targets.
+//! Compiler for a target on a Debian machine whose rustup cannot fetch it.
 //!
 //! Debian's security suite carries `rustc-web`, a current rustc with its sources. The packages are downloaded and
 //! unpacked into a folder of our own under the user's cache (nothing is installed, nothing shadowed), then the standard
@@ -14,17 +14,17 @@ use crate::disk::{copy, entries, failed, make_folder, remove_folder, write};
 use crate::failure::{Failure, Outcome};
 use crate::run::{cargo, command, read, run, target_folder, works};
 
-/// Part of the folder's name: to be raised when the recipe below changes, so that old prefixes are made anew.
+/// Part of the folder's name; raise it if the recipe below changes, so that old prefixes are made again.
 const RECIPE: u32 = 4;
-/// The package whose version all others share.
+/// Package whose version all others share.
 const COMPILER: &str = "rustc-web";
-/// The empty package whose building builds the standard library.
+/// Empty package, built to build the standard library.
 const PROJECT: &str = "library-of-the-target";
 
-/// The private prefix, where it was made before.
+/// Returns the private prefix, or `None` if it has not been made.
 ///
 /// # Errors
-/// The cache folder cannot be named.
+/// The cache folder is unknown.
 pub(super) fn find(target: Target) -> Outcome<Option<PathBuf>> {
     if !debian::is_debian() {
         return Ok(None);
@@ -34,10 +34,10 @@ pub(super) fn find(target: Target) -> Outcome<Option<PathBuf>> {
     Ok(prefix.filter(|prefix| usable(prefix, target)))
 }
 
-/// Makes the private prefix, unless somebody else just has.
+/// Makes the private prefix, unless another process has just made it.
 ///
 /// # Errors
-/// Off Debian, without package lists, or when a download or the build of `core` fails.
+/// The system is not Debian, has no package lists, or a download or the build of `core` fails.
 pub(super) fn make(host: &HostCompiler, target: Target) -> Outcome<PathBuf> {
     let triple = target.triple();
     if !debian::is_debian() {
@@ -69,7 +69,7 @@ pub(super) fn make(host: &HostCompiler, target: Target) -> Outcome<PathBuf> {
     Ok(prefix)
 }
 
-/// Downloads, unpacks and builds beside the prefix, and moves it into place only when it is whole.
+/// Downloads, unpacks and builds next to the prefix, and moves the result there when it is complete.
 fn unpack_and_build(
     folder: &Path,
     prefix: &Path,
@@ -92,7 +92,7 @@ fn unpack_and_build(
     unpack(&packages, &unfinished)?;
     build_library(&unfinished, host, target)?;
     write_wrappers(&unfinished, prefix, host)?;
-    // What was compiled against another copy of `core` cannot be linked with this one.
+    // Crates compiled against another copy of `core` cannot be linked with this one.
     remove_folder(&target_folder()?.join(triple))?;
     fs::rename(&unfinished, prefix).map_err(|why| failed("moving into place", prefix, why))?;
     if usable(prefix, target) {
@@ -122,7 +122,7 @@ fn download(packages: &Path, version: &str) -> Outcome {
         .current_dir(packages)
         .args(["download", "-qq", "-o", "APT::Sandbox::User=root"]);
     run(fetch.args(&same_version), next)?;
-    // What these need of the system and a bare machine lacks: LLVM, and on such a machine the libraries that LLVM needs.
+    // Dependencies that the machine lacks: LLVM, and possibly the libraries that LLVM needs.
     let plan = read(
         command("apt-get")
             .args(["install", "--simulate", "--no-install-recommends"])
@@ -142,13 +142,13 @@ fn download(packages: &Path, version: &str) -> Outcome {
     run(fetch.args(missing), next)
 }
 
-/// The packages that a simulated `apt-get install` would install.
+/// Packages that a simulated `apt-get install` would install.
 fn planned(plan: &str) -> impl Iterator<Item = &str> {
     plan.lines()
         .filter_map(|line| line.strip_prefix("Inst ")?.split_whitespace().next())
 }
 
-/// Whether `name=version` asks for the package.
+/// Returns `true` if `name=version` names the package.
 fn is_of(asked: &str, package: &str) -> bool {
     asked
         .split_once('=')
@@ -196,7 +196,7 @@ fn build_library(prefix: &Path, host: &HostCompiler, target: Target) -> Outcome 
         .env("RUSTC", prefix.join("usr/bin/rustc"))
         .env("RUSTC_BOOTSTRAP", "1") // build-std is unstable; the result is an ordinary sysroot
         .env("LD_LIBRARY_PATH", library_path(prefix, host))
-        // No path of this machine in panic messages.
+        // Removes paths of this machine from panic messages.
         .env(
             "RUSTFLAGS",
             format!(
@@ -239,7 +239,7 @@ fn build_library(prefix: &Path, host: &HostCompiler, target: Target) -> Outcome 
     Ok(())
 }
 
-/// Scripts under the names that cargo looks for; cargo wants the compiler to be called `rustc`.
+/// Writes scripts with the names that cargo expects; the compiler must be called `rustc`.
 fn write_wrappers(unfinished: &Path, prefix: &Path, host: &HostCompiler) -> Outcome {
     let libraries = library_path(prefix, host);
     for name in ["rustc", "clippy-driver"] {
@@ -272,7 +272,7 @@ fn write_script(path: &Path, body: &str) -> Outcome {
     Ok(())
 }
 
-/// Whether compiler, clippy, library and linker are there and run.
+/// Returns `true` if compiler, clippy, library and linker exist and run.
 fn usable(prefix: &Path, target: Target) -> bool {
     let rustlib = prefix.join("usr/lib/rustlib");
     let linker = entries(&rustlib, |name| name.contains("-linux-"))
@@ -286,7 +286,7 @@ fn usable(prefix: &Path, target: Target) -> bool {
         && linker.is_some_and(|linker| works(command(linker).args(["-flavor", "gnu", "--version"])))
 }
 
-/// The prefix of the candidate version; without package lists, whichever was made by this recipe.
+/// Prefix of the candidate version; without package lists, any prefix made by this recipe.
 fn newest_made(folder: &Path, candidate: Option<&str>, target: Target) -> Option<PathBuf> {
     let fits = |name: &str| match candidate {
         Some(version) => name == prefix_name(version, target),
@@ -304,14 +304,14 @@ fn minor_version(version: &str) -> String {
     version.split('.').take(2).collect::<Vec<_>>().join(".")
 }
 
-/// Where the unpacked shared libraries lie, as `LD_LIBRARY_PATH` wants it; some packages still use the folder at the root.
+/// Folders of the unpacked shared libraries for `LD_LIBRARY_PATH`; some packages still use the folder at the root.
 fn library_path(prefix: &Path, host: &HostCompiler) -> String {
     let folder = multiarch(&host.triple);
     let root = prefix.display();
     format!("{root}/usr/lib/{folder}:{root}/lib/{folder}")
 }
 
-/// Debian's name for the triple's library folder.
+/// Debian's name of the triple's library folder.
 fn multiarch(triple: &str) -> String {
     let processor = triple.split('-').next().unwrap_or(triple);
     format!("{processor}-linux-gnu")

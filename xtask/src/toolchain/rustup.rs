@@ -1,4 +1,4 @@
-//! The ordinary way to a target, for whoever has rustup and a network that reaches its server.
+//! Installation of a target by rustup, which needs a network.
 
 use std::time::Duration;
 
@@ -6,13 +6,13 @@ use super::Target;
 use crate::failure::{Failure, Outcome};
 use crate::run::{command, run_for, works};
 
-/// A server that cannot be reached must not hold anybody up: there is another way.
+/// Time limit, since a server may be unreachable and there is an alternative.
 const PATIENCE: Duration = Duration::from_mins(2);
 
 /// `rustup target add` for the chip, `rustup component add rust-src` for the page; for the active toolchain.
 ///
 /// # Errors
-/// There is no rustup, or it cannot fetch the target.
+/// rustup is missing or cannot fetch the target.
 pub(super) fn add(target: Target) -> Outcome {
     if !works(command("rustup").arg("--version")) {
         return Err(Failure::new(
