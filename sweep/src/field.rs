@@ -1,4 +1,4 @@
-//! What an axis can change: the fields of the swimmer file that a gait depends on, the bounds, and the servos' rate.
+//! Parameters that an axis can vary: fields of the swimmer file that affect a gait, bounds, and the servos' rate.
 
 use std::fmt;
 
@@ -9,7 +9,7 @@ use swimmer_model::{Swimmer, TangentialDrag};
 
 use crate::Aim;
 
-/// A number of a design that an axis changes.
+/// Parameter of a design that an axis varies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Field {
     /// Length of the middle link \[m\].
@@ -51,33 +51,33 @@ pub enum Field {
     /// Clearance of the side links \[m\].
     #[serde(rename = "bounds.clearance")]
     Clearance,
-    /// Whether gaits stay in the sector φ₁ ≥ |φ₂|: 0 or 1.
+    /// Bound to the sector φ₁ ≥ |φ₂|: 0 or 1.
     #[serde(rename = "bounds.sector")]
     Sector,
-    /// Whether the side links may not cross: 0 or 1.
+    /// Bound that the side links do not cross: 0 or 1.
     #[serde(rename = "bounds.no_overlap")]
     NoOverlap,
     /// Largest rate of both servos \[rad/s\].
     #[serde(rename = "max_rate")]
     MaxRate,
-    /// What the gaits are best at: an index into [`Aim::ALL`].
+    /// Objective: an index into [`Aim::ALL`].
     #[serde(rename = "objective")]
     Objective,
 }
 
-/// A design: all that its best gait depends on.
+/// Design: everything on which its best gait depends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Design {
     pub(crate) swimmer: Swimmer<f64>,
     pub(crate) bounds: Bounds,
-    /// Largest |φ̇ᵢ| \[rad/s\], where it is told.
+    /// Largest |φ̇ᵢ| \[rad/s\], if given.
     pub(crate) rates: Option<[f64; 2]>,
-    /// What its gait is best at.
+    /// Objective of the gait.
     pub(crate) aim: Aim,
 }
 
 impl Field {
-    /// All there are.
+    /// All parameters.
     pub const ALL: [Self; 17] = [
         Self::Middle,
         Self::Side,
@@ -98,7 +98,7 @@ impl Field {
         Self::Objective,
     ];
 
-    /// Its name in a spec, a dotted path.
+    /// Name in a spec, a dotted path.
     pub fn name(self) -> &'static str {
         match self {
             Self::Middle => "links.middle",
@@ -121,7 +121,7 @@ impl Field {
         }
     }
 
-    /// The kind of quantity whose bare numbers are checked for a slip of their unit; `None` for all others.
+    /// Quantity by which bare numbers are checked for a wrong unit. Returns `None` if there is no such check.
     pub(crate) fn quantity(self) -> Option<Quantity> {
         match self {
             Self::Middle | Self::Side | Self::Front | Self::Back => Some(Quantity::Length),
@@ -131,7 +131,7 @@ impl Field {
         }
     }
 
-    /// Its unit; empty where it has none.
+    /// Unit; empty for a dimensionless parameter.
     pub fn unit(self) -> &'static str {
         match self {
             Self::Middle
@@ -153,22 +153,22 @@ impl Field {
         }
     }
 
-    /// Whether zero is a value of it.
+    /// Returns `true` if zero is a valid value.
     pub(crate) fn may_be_zero(self) -> bool {
         matches!(self, Self::Sphere | Self::Clearance | Self::Objective) || self.chooses()
     }
 
-    /// Whether its values are false and true, kept as 0 and 1.
+    /// Returns `true` if its values are false and true, stored as 0 and 1.
     pub(crate) fn chooses(self) -> bool {
         matches!(self, Self::Sector | Self::NoOverlap)
     }
 
-    /// Whether what is maximised at its values can be compared.
+    /// Returns `true` if the maximised quantity is comparable between its values.
     pub(crate) fn compares(self) -> bool {
         self != Self::Objective
     }
 
-    /// Its value as words: that of an objective.
+    /// Value given as a word, which only the objective has. Returns `None` for an invalid word.
     pub fn parse(self, text: &str) -> Option<f64> {
         match self {
             Self::Objective => Aim::of_word(text).map(Aim::index),
@@ -176,22 +176,22 @@ impl Field {
         }
     }
 
-    /// Whether it bounds a quarter, and so displacement gaits alone.
+    /// Returns `true` if it bounds a quarter and therefore applies to displacement gaits only.
     pub(crate) fn of_quarters(self) -> bool {
         matches!(self, Self::MinAngle | Self::Sector)
     }
 
-    /// +1 where a larger value lets in more gaits, −1 where it lets in fewer, 0 where it does neither.
+    /// +1 if a larger value admits more gaits, −1 if it admits fewer, 0 otherwise.
     pub(crate) fn widens(self) -> i8 {
         match self {
             Self::MaxAngle | Self::MaxRate => 1,
-            // The sector asks for a gait that leads the other way.
+            // The sector selects a gait of the other sense.
             Self::MinAngle | Self::Clearance | Self::NoOverlap => -1,
             _ => 0,
         }
     }
 
-    /// What both say something of, where two axes do.
+    /// Returns `true` if two axes determine the same quantity.
     pub(crate) fn clashes(self, other: Self) -> bool {
         let lengths = |field| matches!(field, Self::Middle | Self::Side | Self::Front | Self::Back);
         let drags = |field| {
@@ -211,7 +211,7 @@ impl Field {
             || (other == Self::Side && sides(self))
     }
 
-    /// Gives a design this value.
+    /// Sets the parameter of a design to a value.
     pub(crate) fn set(self, design: &mut Design, value: f64) {
         let Design {
             swimmer, bounds, ..

@@ -1,4 +1,4 @@
-//! One design solved: from nothing, or from the gait of its neighbour.
+//! Solution of one design: by a full search, or by continuation from the gait of a neighbouring design.
 
 use gait_optimizer::{
     Branch, DisplacementError, DisplacementProblem, EfficiencyProblem, EfficiencySeed, Fastest,
@@ -10,28 +10,28 @@ use serde::{Deserialize, Serialize};
 use crate::field::Design;
 use crate::row::Row;
 
-/// What the gaits of a sweep are best at.
+/// Objective of the gaits of a sweep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Aim {
-    /// Most net displacement, of simple gaits with the paper's two symmetries, either sense.
+    /// Largest net displacement, of simple gaits with the paper's two symmetries, in either sense.
     Displacement,
-    /// Most Lighthill efficiency: the small gait.
+    /// Lighthill efficiency, small gait.
     EfficiencySmall,
-    /// The large one.
+    /// Lighthill efficiency, large gait.
     EfficiencyLarge,
-    /// Most displacement per unit of time under the servos' rates.
+    /// Largest displacement per unit of time under the servos' rates.
     Speed,
-    /// Most rotation.
+    /// Largest rotation.
     Turning,
-    /// Most displacement across the heading.
+    /// Largest displacement across the heading.
     Sideways,
-    /// Nothing is solved: a smooth function of the key, to try out a machine or a scheduler.
+    /// Smooth function of the key without any solution, to test a machine or a scheduler.
     Stub,
 }
 
 impl Aim {
-    /// All there are, in the order that a plan counts them.
+    /// All objectives, in the order of their indices in a plan.
     pub const ALL: [Self; 7] = [
         Self::Displacement,
         Self::EfficiencySmall,
@@ -42,7 +42,7 @@ impl Aim {
         Self::Stub,
     ];
 
-    /// The one of this word; `efficiency` alone is the small gait's.
+    /// Objective with this word; `efficiency` means the small gait. Returns `None` for an unknown word.
     ///
     /// ```
     /// use sweep::Aim;
@@ -56,7 +56,7 @@ impl Aim {
         small.or_else(|| Self::ALL.into_iter().find(|aim| aim.word() == word))
     }
 
-    /// Its place in [`Aim::ALL`], which a plan keeps as a value of an axis.
+    /// Index in [`Aim::ALL`], which a plan stores as a value of an axis.
     pub(crate) fn index(self) -> f64 {
         let places = Self::ALL.into_iter().position(|aim| aim == self);
         places.unwrap_or(0) as f64
@@ -68,7 +68,7 @@ impl Aim {
             .find(|aim| (aim.index() - index).abs() < 0.5)
     }
 
-    /// Its word.
+    /// Word of the objective in specs and tables.
     pub fn word(self) -> &'static str {
         match self {
             Self::Displacement => "displacement",
@@ -81,7 +81,7 @@ impl Aim {
         }
     }
 
-    /// What is maximised, with its unit.
+    /// Maximised quantity with its unit.
     pub fn quantity(self) -> &'static str {
         match self {
             Self::Displacement => "|X|/L",
@@ -93,7 +93,7 @@ impl Aim {
         }
     }
 
-    /// Whether a neighbour's gait is a start.
+    /// Returns `true` if a neighbour's gait can serve as a start.
     pub(crate) fn follows(self) -> bool {
         matches!(
             self,
@@ -102,7 +102,7 @@ impl Aim {
     }
 }
 
-/// A gait as its neighbour may start from.
+/// Gait in the form from which a neighbour can start.
 #[derive(Debug, Clone)]
 enum Held {
     Gait(Box<OptimalGait>),
@@ -111,7 +111,7 @@ enum Held {
     Nothing,
 }
 
-/// A design solved.
+/// Solved design.
 #[derive(Debug, Clone)]
 pub(crate) struct Solved {
     pub(crate) row: Row,
@@ -119,7 +119,7 @@ pub(crate) struct Solved {
 }
 
 impl Solved {
-    /// The answer of a solver that keeps nothing to start a neighbour from.
+    /// Solution without a gait from which a neighbour could start.
     pub(crate) fn of_row(row: Row) -> Self {
         Self {
             row,
@@ -127,7 +127,7 @@ impl Solved {
         }
     }
 
-    /// Whether two answers to one design are one gait: as good to this share, and of the same arcs.
+    /// Returns `true` if two solutions of a design are the same gait: equal value within a relative tolerance, and the same arcs.
     pub(crate) fn same(&self, other: &Self) -> bool {
         const SAME: f64 = 1e-7;
         let (Some(a), Some(b)) = (self.row.objective, other.row.objective) else {
@@ -137,15 +137,15 @@ impl Solved {
     }
 }
 
-/// Samples of a quarter gait. What is kept is not its samples but its numbers, which do not depend on them: X/L and ξ come from the
-/// arcs, and the certificate asks for more samples where these do not do.
+/// Samples of a quarter gait. The stored numbers do not depend on them: X/L and ξ are computed from the arcs, and the certificate
+/// requests more samples if it needs them.
 const QUARTER: usize = 64;
 
-/// Why a design has no gait.
+/// Reason why a design has no gait.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Missing {
     pub(crate) reason: String,
-    /// Value of a gait that was found but fails its certificate: a gait with a lower value is not the best.
+    /// Value of a gait whose certificate fails; a gait with a lower value is not the best.
     pub(crate) outdone: Option<f64>,
 }
 
@@ -174,23 +174,23 @@ impl From<DisplacementError> for Missing {
     }
 }
 
-/// What came of a design.
+/// Result of a design.
 pub(crate) type Answer = Result<Solved, Missing>;
 
-/// What solves the designs of a plan.
+/// Solver of the designs of a plan.
 pub(crate) trait Solve {
-    /// From nothing: the objective's own search.
+    /// Solves a design by the search of the objective.
     fn cold(&self, design: &Design, key: u64) -> Answer;
-    /// From its neighbour's answer; none where that leads to no certified gait.
+    /// Solves a design from its neighbour's solution. Returns `None` if that leads to no certified gait.
     fn warm(&self, design: &Design, key: u64, near: &Solved) -> Option<Solved>;
-    /// From the answer to a design that differs in the servos' rates alone; none where these decide which gait is best.
+    /// Derives the result from that of a design with other servo rates. Returns `None` if the rates affect the best gait.
     fn timed_anew(&self, design: &Design, key: u64, same: &Answer) -> Option<Answer>;
 }
 
-/// How designs are solved.
+/// Solver with the options of a spec.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Solver {
-    /// Starts of a search, where the spec tells them.
+    /// Number of starts of a search; `None` for the default.
     pub(crate) starts: Option<u32>,
 }
 
@@ -325,7 +325,7 @@ impl Solve for Solver {
     }
 }
 
-/// A row without a swimmer.
+/// Row of the objective `stub`.
 fn stub(key: u64) -> Solved {
     let wave = (key as f64 * 1e-3).sin();
     Solved::of_row(Row {

@@ -101,26 +101,26 @@ pub enum Design {
     Grid,
     /// Independent, uniformly distributed points.
     Random {
-        /// How many.
+        /// Number of points.
         count: u64,
-        /// Of the draws.
+        /// Seed of the random numbers.
         seed: u64,
     },
     /// The first points of an Owen-scrambled Sobol sequence.
     Sobol {
-        /// How many, at most [`Design::MOST_SOBOL`].
+        /// Number of points, at most [`Design::MOST_SOBOL`].
         count: u64,
-        /// Of the scrambling.
+        /// Seed of the scrambling.
         seed: u32,
     },
 }
 
 impl Design {
-    /// The sequence has no more points.
+    /// Length of the sequence.
     pub const MOST_SOBOL: u64 = 1 << 16;
 }
 
-/// Bounds as a plan keeps them; angles in rad, the clearance in m.
+/// Bounds as a plan stores them; angles in rad, the clearance in m.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct KeptBounds {
@@ -143,7 +143,7 @@ impl From<KeptBounds> for Bounds {
     }
 }
 
-/// What is hashed and written.
+/// Content of a plan that is hashed and written.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Content {
@@ -154,18 +154,18 @@ pub(crate) struct Content {
     pub(crate) anchor: u64,
     pub(crate) starts: Option<u32>,
     pub(crate) max_rate: Option<[f64; 2]>,
-    /// A swimmer file's text.
+    /// Text of the swimmer file.
     pub(crate) swimmer: String,
     pub(crate) bounds: KeptBounds,
     pub(crate) design: Design,
     pub(crate) axis: Vec<Axis>,
 }
 
-/// What a plan's text begins with.
+/// First words of a plan's text.
 pub(crate) const FORMAT: &str = "swimmer-sweep-plan 1";
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// An immutable plan.
+/// Immutable plan.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
     content: Content,
@@ -175,13 +175,13 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Its name in the folder of a sweep.
+    /// File name in the folder of a sweep.
     pub const FILE: &'static str = "plan.toml";
 
-    /// The plan of a spec. A swimmer file is looked for from the spec's own folder.
+    /// Returns the plan of a spec. The path of a swimmer file is relative to the spec.
     ///
     /// # Errors
-    /// [`SweepError::File`] with line and column, and what to do.
+    /// [`SweepError::File`] with line, column and remedy.
     pub fn of_spec(text: &str, path: &Path) -> Result<Self, SweepError> {
         let mut content = crate::spec::read(text, path)?;
         FORMAT.clone_into(&mut content.format);
@@ -211,10 +211,10 @@ impl Plan {
         })
     }
 
-    /// Writes it into the folder of a sweep, which is made where it is missing. The same plan again changes nothing.
+    /// Writes the plan into the folder of a sweep, which is created if it is missing. An identical plan is left as it is.
     ///
     /// # Errors
-    /// [`SweepError::OtherPlan`] where another one is there, [`SweepError::Taken`] where something else is, or that of the file.
+    /// [`SweepError::OtherPlan`] if the folder has another plan, [`SweepError::Taken`] if it has other files, or the error of the file.
     pub fn save(&self, folder: &Path) -> Result<PathBuf, SweepError> {
         let path = folder.join(Self::FILE);
         if path.exists() {
@@ -242,7 +242,7 @@ impl Plan {
     /// Reads the plan of a folder.
     ///
     /// # Errors
-    /// It is not there, was changed, or was made by another version.
+    /// The plan is missing, was changed, or was made by another version.
     pub fn load(folder: &Path) -> Result<Self, SweepError> {
         let path = folder.join(Self::FILE);
         let text = fs::read_to_string(&path).map_err(|source| FileError::Read {
@@ -260,7 +260,7 @@ impl Plan {
         plan
     }
 
-    /// The hash of its content, 64 hexadecimal digits.
+    /// Hash of the content, 64 hexadecimal digits.
     pub fn hash(&self) -> String {
         hex(&self.hash)
     }
@@ -269,7 +269,7 @@ impl Plan {
         &self.hash
     }
 
-    /// Its text, without the hash.
+    /// Text without the hash.
     pub(crate) fn text(&self) -> &str {
         &self.text
     }
@@ -278,7 +278,7 @@ impl Plan {
         &self.content
     }
 
-    /// What the gaits are best at; several where that is an axis.
+    /// Objectives of the gaits; several if the objective is an axis.
     pub fn objectives(&self) -> Vec<Aim> {
         let mut axes = self.axes().iter();
         match axes.find(|axis| axis.name == Field::Objective) {
@@ -289,12 +289,12 @@ impl Plan {
         }
     }
 
-    /// The name of the swimmer that the designs are changes of.
+    /// Name of the swimmer that the designs modify.
     pub fn swimmer_name(&self) -> &str {
         &self.base.name
     }
 
-    /// What changes from design to design.
+    /// Axes of the plan.
     pub fn axes(&self) -> &[Axis] {
         &self.content.axis
     }
@@ -304,7 +304,7 @@ impl Plan {
         self.content.design
     }
 
-    /// How many designs there are; their keys are 0 … tasks − 1.
+    /// Number of designs; their keys are 0 … tasks − 1.
     pub fn tasks(&self) -> u64 {
         match self.content.design {
             Design::Grid => self.axes().iter().map(Axis::count).product(),
@@ -312,23 +312,23 @@ impl Plan {
         }
     }
 
-    /// Tasks of a block; the last one may have fewer.
+    /// Number of tasks of a block; the last block may have fewer.
     pub fn block_size(&self) -> u64 {
         self.content.block
     }
 
-    /// Blocks there are.
+    /// Number of blocks.
     pub fn blocks(&self) -> u64 {
         self.tasks().div_ceil(self.content.block)
     }
 
-    /// The keys of a block.
+    /// Keys of a block.
     pub fn keys(&self, block: u64) -> std::ops::Range<u64> {
         let from = block.saturating_mul(self.content.block);
         from.min(self.tasks())..from.saturating_add(self.content.block).min(self.tasks())
     }
 
-    /// Which value of each axis of a grid a task has; empty in the other designs.
+    /// Index of a task's value on each axis of a grid; empty in the other designs.
     pub fn indices(&self, key: u64) -> Vec<u64> {
         if self.content.design != Design::Grid {
             return Vec::new();
@@ -348,7 +348,7 @@ impl Plan {
         indices
     }
 
-    /// The values of the axes of a task.
+    /// Values of the axes of a task.
     pub fn point(&self, key: u64) -> Vec<f64> {
         let axes = self.axes().iter();
         match self.content.design {
@@ -358,7 +358,7 @@ impl Plan {
                 .collect(),
             Design::Random { seed, .. } => {
                 let mut draws = ChaCha8Rng::seed_from_u64(seed);
-                // Two words a number: any point at once.
+                // A number takes two words, so any point can be computed directly.
                 draws.set_word_pos(2 * u128::from(key) * axes.len() as u128);
                 axes.map(|axis| {
                     axis.between((draws.next_u64() >> 11) as f64 / (1_u64 << 53) as f64)
@@ -376,7 +376,7 @@ impl Plan {
         }
     }
 
-    /// The design of a task.
+    /// Design of a task.
     pub(crate) fn design_of(&self, key: u64) -> DesignPoint {
         let mut design = DesignPoint {
             swimmer: self.base.swimmer,

@@ -1,4 +1,4 @@
-//! What people write: a swimmer, an objective, axes. Every mistake is told with its place.
+//! Reader of the spec of a sweep: swimmer, objective, axes. Errors state their position in the file.
 
 mod axes;
 
@@ -70,11 +70,11 @@ struct RawAxis {
 
 /// Most tasks of a plan: their keys are whole numbers in every program that reads the table.
 const MOST_TASKS: u64 = 1 << 53;
-/// Blocks of a plan unless told otherwise, about, so that folders stay quick to list; and their least size.
+/// Approximate default number of blocks, small enough to list folders quickly; and the least size of a block.
 const BLOCKS: u64 = 10_000;
 const LEAST_BLOCK: u64 = 64;
 const MOST_BLOCK: u64 = 1 << 20;
-/// Every so many tasks of a block are solved from nothing, to see whether what followed is still the best.
+/// Default interval between tasks of a block that are solved by a search, which checks the continuation between them.
 const ANCHOR: u64 = 16;
 
 struct Text<'a> {
@@ -96,7 +96,7 @@ impl Text<'_> {
         FileError::at(self.path, line, column, problem).into()
     }
 
-    /// Reads a number of a field above zero.
+    /// Reads a positive number of a field.
     fn positive(
         &self,
         field: Field,
@@ -113,7 +113,7 @@ impl Text<'_> {
         }
     }
 
-    /// Reads a number of a field, and refuses a slip of its unit.
+    /// Reads a number of a field and refuses a value in a wrong unit.
     fn number(
         &self,
         field: Field,
@@ -140,7 +140,7 @@ impl Text<'_> {
     }
 }
 
-/// Reads a spec into what a plan keeps of it.
+/// Reads a spec and returns the content of its plan.
 pub(crate) fn read(text: &str, path: &Path) -> Result<Content, SweepError> {
     let raw: Raw = toml::from_str(text).map_err(|error| {
         let at = error.span().unwrap_or(0..0);
@@ -209,7 +209,7 @@ fn within(
     ))
 }
 
-/// What the gaits are best at, once or as an axis; and whether all axes are for that.
+/// Objectives of the gaits, given once or as an axis, with a check that all axes apply to them.
 fn objectives(source: &Text<'_>, raw: &Raw, axes: &[Axis]) -> Result<Vec<Aim>, SweepError> {
     let axis = axes.iter().find(|axis| axis.name == Field::Objective);
     let objectives = match (&raw.objective, axis) {

@@ -1,4 +1,4 @@
-//! A sweep from its spec to its table: the same bytes however it is split, and nothing lost or half written.
+//! Sweeps from the spec to the table: identical bytes for every split, no lost and no incomplete part.
 
 use std::fs;
 use std::path::Path;
@@ -43,7 +43,7 @@ fn ran(plan: &Plan, folder: &Path, shard: Shard, threads: usize) -> Ran {
     .unwrap()
 }
 
-/// The table of a sweep run in so many shards, each on so many threads.
+/// Table of a sweep that is run in `shards` shards of `threads` threads.
 fn table(text: &str, shards: u64, threads: usize) -> Vec<u8> {
     let plan = plan(text);
     let folder = tempfile::tempdir().unwrap();
@@ -177,7 +177,7 @@ fn a_hundred_million_tasks_are_a_rule() {
         (random.tasks(), random.block_size(), random.blocks()),
         (100_000_000, 16_384, 6_104)
     );
-    // Any point at once, the same from wherever it is asked.
+    // A point does not depend on the order of the calls.
     let last = random.point(99_999_999);
     assert_eq!(last, plan(text).point(99_999_999));
     assert_ne!(last, random.point(99_999_998));
@@ -293,7 +293,7 @@ fn mistakes_are_told_with_their_place() {
     }
 }
 
-/// Each design's answer is that of the plan of its objective alone; neighbours are not of unlike objectives.
+/// Each design has the result of a plan with its objective alone; designs of different objectives are not neighbours.
 #[test]
 fn the_objective_is_an_axis() {
     let rest = "max_rate = 1.0\n[bounds]\nmax_angle = 2.0\n\

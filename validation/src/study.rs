@@ -1,4 +1,4 @@
-//! What is computed once and used by both the table and the figures.
+//! Results that are computed once for the table and the figures of the paper.
 
 use gait_optimizer::{
     BestAmplitude, Bounds, Branch, DisplacementError, DisplacementProblem, EfficiencyProblem,
@@ -7,33 +7,33 @@ use gait_optimizer::{
 };
 use swimmer_model::{InvalidSwimmer, Model, Stroke, Swimmer};
 
-/// Why a study could not be made.
+/// Failure of a study.
 #[derive(Debug, Clone, thiserror::Error)]
 pub enum StudyError {
-    /// A gait that the paper shows was not found.
+    /// A gait of the paper was not found.
     #[error("{gait} was not found: {reason}")]
     NoGait {
-        /// Which one.
+        /// Name of the gait.
         gait: String,
-        /// Why.
+        /// Reason.
         reason: String,
     },
-    /// A swimmer of the paper makes no model.
+    /// A swimmer of the paper is invalid.
     #[error(transparent)]
     Swimmer(#[from] InvalidSwimmer),
-    /// A height map was not made.
+    /// A height map could not be computed.
     #[error(transparent)]
     HeightMap(#[from] HeightMapError),
 }
 
-/// The paper's upper bound on the joints \[rad\].
+/// Upper bound on the joint angles in the paper \[rad\].
 pub const UPPER: f64 = 2.8;
-/// Its lower one.
+/// Lower bound on the joint angles in the paper \[rad\].
 const LOWER: f64 = 1.5;
-/// The largest amplitude of its figures \[rad\].
+/// Largest amplitude in the paper's figures \[rad\].
 pub const LARGEST: f64 = 4.5;
 
-/// One swimmer's circles and squares.
+/// Circles and squares of one swimmer.
 #[derive(Debug)]
 pub struct Simple {
     /// Best amplitudes for |X|: circles, squares.
@@ -44,23 +44,23 @@ pub struct Simple {
     pub curves: [Vec<(f64, Stroke<f64>)>; 2],
 }
 
-/// The free Lighthill gaits of one swimmer.
+/// Gaits of highest Lighthill efficiency of one swimmer, without bounds.
 #[derive(Debug)]
 pub struct Lighthill {
-    /// X > 0.
+    /// Small gait, X > 0.
     pub small: OptimalGait,
-    /// X < 0.
+    /// Large gait, X < 0.
     pub large: OptimalGait,
 }
 
-/// Everything that the paper shows, computed.
+/// Computed results of the paper.
 #[derive(Debug)]
 pub struct Study {
     /// Purcell's swimmer.
     pub purcell: Model<f64>,
-    /// The robot with its head.
+    /// Robot with its head.
     pub robot: Model<f64>,
-    /// The robot as slender links.
+    /// Robot as slender links.
     pub slender: Model<f64>,
     /// Circles and squares.
     pub purcell_simple: Simple,
@@ -68,27 +68,27 @@ pub struct Study {
     pub robot_simple: Simple,
     /// Circles and squares.
     pub slender_simple: Simple,
-    /// Purcell's swimmer without bounds, the gait that the paper builds on.
+    /// Displacement gait of Purcell's swimmer without bounds.
     pub purcell_displacement: OptimalGait,
     /// Gaits (b), (c), (d) of the robot.
     pub robot_displacement: [OptimalGait; 3],
-    /// Whether the robot has an optimum without bounds.
+    /// `true` if the robot has an optimum without bounds.
     pub robot_unbounded: bool,
     /// Gaits of most efficiency.
     pub purcell_lighthill: Lighthill,
     /// Gaits of most efficiency.
     pub robot_lighthill: Lighthill,
-    /// Within the paper's bound.
+    /// Height map of the robot within the paper's bound.
     pub robot_map: HeightMap,
-    /// Within 2.5 rad.
+    /// Height map of Purcell's swimmer within 2.5 rad.
     pub purcell_map: HeightMap,
 }
 
-/// Steps that are told while a study is made.
+/// Number of steps in the reported progress.
 const STEPS: f64 = 8.0;
 
 impl Study {
-    /// Computes everything; `watch` is told the share that is done.
+    /// Computes all results; `watch` receives the completed fraction.
     ///
     /// # Errors
     /// [`StudyError`] names the gait that could not be found.

@@ -1,4 +1,4 @@
-//! The axes of a spec, and which points of them are designs.
+//! Axes of a spec, and the selection of their points as designs.
 
 use toml::Spanned;
 
@@ -6,7 +6,7 @@ use super::{Number, Raw, RawAxis, Text};
 use crate::plan::{Axis, Design, Scale, Values};
 use crate::{Field, SweepError};
 
-/// The axes, and which points of them are designs.
+/// Reads the axes and the selection of the designs.
 pub(super) fn designs(source: &Text<'_>, raw: &Raw) -> Result<(Vec<Axis>, Design), SweepError> {
     let kind = raw.design.as_ref().map_or("grid", |kind| kind.get_ref());
     let span = raw.design.as_ref().map_or(0..0, Spanned::span);
