@@ -1,5 +1,4 @@
-//! The emulated board as a child process that is driven command by command; it lives only while a command runs, so the caller
-//! owns its time.
+//! Emulated board: a child process driven by commands. Emulated time advances only during a command, so the caller controls it.
 
 mod config;
 mod error;
@@ -20,10 +19,10 @@ use crate::log::Log;
 pub use config::{BoardConfig, BoardKind};
 pub use error::EmulatorError;
 
-/// A float in nanoseconds is exact for so long that this is plenty.
+/// Tolerance for the rounding of times that are floats in nanoseconds.
 const ROUNDING: Duration = Duration::from_nanos(10);
 
-/// What leads from the board to a computer.
+/// Connection between the board and a computer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Line {
     /// The UART to the HC-05.
@@ -33,7 +32,7 @@ pub enum Line {
     Usb,
 }
 
-/// An emulated board with the unmodified firmware in its flash.
+/// Emulated board with the unmodified firmware in its flash.
 #[derive(Debug)]
 pub struct Board {
     child: Child,
@@ -42,16 +41,16 @@ pub struct Board {
     now: Duration,
     powered: bool,
     events: Events,
-    /// What left the UART and the USB port, and when.
+    /// Bytes sent by the UART and the USB port, with their times.
     sent: [VecDeque<(Duration, u8)>; 2],
     log: Log,
 }
 
 impl Board {
-    /// A board that was just switched on, at emulated time zero, with the radio not connected and no battery voltage.
+    /// Starts a board at emulated time zero, with the radio not connected and no battery voltage.
     ///
     /// # Errors
-    /// [`EmulatorError`]: what is missing and how to get it.
+    /// [`EmulatorError`] with the missing file and the command that creates it.
     pub fn start(config: &BoardConfig) -> Result<Self, EmulatorError> {
         if let Some(missing) = config.missing() {
             return Err(missing);
@@ -83,20 +82,20 @@ impl Board {
         })
     }
 
-    /// Emulated time since the first power-on; it goes on over resets and power cycles.
+    /// Emulated time since the first power-on; it continues over resets and power cycles.
     pub fn now(&self) -> Duration {
         self.now
     }
 
-    /// Whether it has power: not after a cut, until [`Self::power_cycle`].
+    /// Returns `true` if the board has power: `false` after a power cut until [`Self::power_cycle`].
     pub fn powered(&self) -> bool {
         self.powered
     }
 
-    /// Runs until emulated time `until`; an earlier time does nothing.
+    /// Runs until emulated time `until`; a time in the past has no effect.
     ///
     /// # Errors
-    /// [`EmulatorError`]; so for all that follow.
+    /// [`EmulatorError`]; the same for all methods below.
     pub fn run(&mut self, until: Duration) -> Result<(), EmulatorError> {
         self.run_command(
             until,
@@ -104,7 +103,7 @@ impl Board {
         )
     }
 
-    /// The same, but not for longer than `after_byte` from the first byte that it sends.
+    /// Like [`Self::run`], but ends at the latest `after_byte` after the first byte that the board sends.
     ///
     /// # Errors
     /// As [`Self::run`].
@@ -125,7 +124,7 @@ impl Board {
         }
         let before = self.now;
         let answer = self.ask(command)?;
-        // It ends with the instruction that reaches the time: a little later, or, by rounding, sooner.
+        // The run ends with the instruction that reaches the time: slightly later or, by rounding, earlier.
         let reached = nanos(answer.now);
         self.now = if reached + ROUNDING >= until {
             until
@@ -136,7 +135,7 @@ impl Board {
         Ok(())
     }
 
-    /// Bytes to the board's UART; they arrive one after the other at its baud rate.
+    /// Sends bytes to the board's UART; they arrive one after the other at its baud rate.
     ///
     /// # Errors
     /// As [`Self::run`].
@@ -144,7 +143,7 @@ impl Board {
         self.perform(&json!({ "do": "feed", "characters": bytes }))
     }
 
-    /// Bytes to the board's USB port; they wait until it is plugged in and open.
+    /// Sends bytes to the board's USB port; they wait until it is plugged in and open.
     ///
     /// # Errors
     /// As [`Self::run`].
@@ -152,7 +151,7 @@ impl Board {
         self.perform(&json!({ "do": "feed_usb", "bytes": bytes }))
     }
 
-    /// The same as [`Self::feed`] with what a UART can find wrong with each: see [`heard`](host_link::testing::heard) for a wrong baud rate.
+    /// Like [`Self::feed`], with the errors that a UART detects; [`heard`](host_link::testing::heard) gives those of a wrong baud rate.
     ///
     /// # Errors
     /// As [`Self::run`].
@@ -161,7 +160,7 @@ impl Board {
         self.perform(&json!({ "do": "feed", "characters": characters }))
     }
 
-    /// Writes all that the flash chip holds to a file.
+    /// Writes the content of the flash chip to a file.
     ///
     /// # Errors
     /// As [`Self::run`]; the file cannot be written.
@@ -169,15 +168,15 @@ impl Board {
         self.perform(&json!({ "do": "save_flash", "path": path }))
     }
 
-    /// Switches on with the flash chip that such a file holds.
+    /// Restarts the board with the flash content of such a file.
     ///
     /// # Errors
-    /// As [`Self::run`]; the file cannot be read or is none of a whole chip.
+    /// As [`Self::run`]; the file cannot be read or does not have the size of the chip.
     pub fn load_flash(&mut self, path: &Path) -> Result<(), EmulatorError> {
         self.perform(&json!({ "do": "load_flash", "path": path }))
     }
 
-    /// How much of its stack the firmware has used since the power came on.
+    /// Stack use of the firmware since power-on.
     ///
     /// # Errors
     /// As [`Self::run`].
@@ -186,8 +185,8 @@ impl Board {
         Ok(answer.stack)
     }
 
-    /// Comes up anew with the flash behind its cache, whose misses take time; without it every read is a hit, as if the
-    /// program were in RAM. Runs at about half the pace.
+    /// Restarts the board with an emulated flash cache, whose misses take time. Without it every read is a hit, as if the program
+    /// were in RAM. Runs at about half the speed.
     ///
     /// # Errors
     /// As [`Self::run`].
@@ -203,7 +202,7 @@ impl Board {
         self.perform(&json!({ "do": "patch", "address": address, "halfword": halfword }))
     }
 
-    /// Addresses of the firmware's symbols with `containing` in their names.
+    /// Addresses of the firmware's symbols whose names contain `containing`.
     ///
     /// # Errors
     /// As [`Self::run`].
@@ -212,7 +211,7 @@ impl Board {
         Ok(answer.symbols)
     }
 
-    /// Bytes of the address space.
+    /// Reads bytes of the address space.
     ///
     /// # Errors
     /// As [`Self::run`].
@@ -221,12 +220,12 @@ impl Board {
         Ok(answer.bytes)
     }
 
-    /// What happened since this was last called.
+    /// Returns the events since the last call.
     pub fn take_events(&mut self) -> Events {
         std::mem::take(&mut self.events)
     }
 
-    /// Takes at most `room` bytes of what the board has sent over a line until `now`.
+    /// Takes at most `room` bytes that the board has sent over a line until `now`.
     pub fn take_sent(&mut self, line: Line, now: Duration, room: usize, out: &mut Vec<u8>) {
         let queue = &mut self.sent[line as usize];
         let sent = queue.iter().take_while(|(at, _)| *at <= now).count();
@@ -246,7 +245,7 @@ impl Board {
         }
     }
 
-    /// A command whose answer holds nothing but events.
+    /// Performs a command whose reply has only events.
     fn perform(&mut self, command: &Value) -> Result<(), EmulatorError> {
         let answer = self.ask(command)?;
         self.take_in(answer);
@@ -286,14 +285,14 @@ impl Board {
     }
 }
 
-/// A character with the error bits of the PL011's data register.
+/// Encodes a character with the error bits of the PL011's data register.
 fn data_register(heard: Character) -> u16 {
     u16::from(heard.byte) | u16::from(heard.framing) << 8 | u16::from(heard.silent) << 10
 }
 
 impl Drop for Board {
     fn drop(&mut self) {
-        // It ends by itself when its input closes; a child that hangs must not outlive us.
+        // The child ends when its input closes; one that hangs must be killed.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }

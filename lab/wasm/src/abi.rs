@@ -1,17 +1,17 @@
-//! What the page sees of the module: one buffer to write into, one to read from, one function between them.
+//! Binary interface between page and module: an input buffer, an output buffer, and a function that performs a call.
 //!
-//! The page asks [`lab_input`] for room, writes the call's name and behind it the call's bytes, and calls [`lab_call`] with both
-//! lengths. The answer lies at [`lab_output`], as long as [`lab_call`] said; [`lab_kind`] tells what it is. Both buffers stay
-//! where they are until the next call, and memory may have grown: the page takes its view of it anew each time.
+//! The page gets a buffer from [`lab_input`], writes the name of the call followed by its bytes, and calls [`lab_call`] with both
+//! lengths. The output is at [`lab_output`] and has the length that [`lab_call`] returned; [`lab_kind`] returns its kind. Both
+//! buffers stay in place until the next call. Memory may have grown, so the page creates its view of it again each time.
 //!
-//! No pointer is ever read on this side. What is unsafe is only that names are exported unmangled.
+//! The module never reads a pointer. `unsafe` is needed only to export unmangled names.
 #![allow(unsafe_code)]
 
 use std::cell::RefCell;
 
 use crate::calls::{Answer, Lab, call};
 
-/// The module's one state. A page calls from one thread.
+/// State of the module. A page calls from one thread.
 #[derive(Default)]
 struct Door {
     input: Vec<u8>,
@@ -24,7 +24,7 @@ thread_local! {
     static DOOR: RefCell<Door> = RefCell::default();
 }
 
-/// Room for `length` bytes to write a call into.
+/// Returns the input buffer, with `length` bytes.
 // SAFETY: no other symbol of the module has this name.
 #[unsafe(no_mangle)]
 pub extern "C" fn lab_input(length: usize) -> *mut u8 {
@@ -35,8 +35,8 @@ pub extern "C" fn lab_input(length: usize) -> *mut u8 {
     })
 }
 
-/// Performs the call that was written: `name` bytes of its name, then `bytes` bytes of what it takes. Returns the length of the
-/// answer.
+/// Performs the call in the input buffer: `name` bytes of its name, then `bytes` bytes of its arguments. Returns the length of
+/// the output.
 // SAFETY: no other symbol of the module has this name.
 #[unsafe(no_mangle)]
 pub extern "C" fn lab_call(name: usize, bytes: usize) -> usize {
@@ -52,14 +52,14 @@ pub extern "C" fn lab_call(name: usize, bytes: usize) -> usize {
     })
 }
 
-/// What the last answer is: 0 JSON, 1 bytes, 2 the reason why there is none.
+/// Kind of the last output: 0 JSON, 1 bytes, 2 an error message.
 // SAFETY: no other symbol of the module has this name.
 #[unsafe(no_mangle)]
 pub extern "C" fn lab_kind() -> u32 {
     DOOR.with_borrow(|door| door.kind)
 }
 
-/// Where the last answer lies.
+/// Address of the last output.
 // SAFETY: no other symbol of the module has this name.
 #[unsafe(no_mangle)]
 pub extern "C" fn lab_output() -> *const u8 {

@@ -1,6 +1,6 @@
-//! What the page's Calibrate calls: `tracks` and `calibrate`, as the commands of those names, from files that were dropped on the
-//! page. A campaign comes in steps, because each takes long: the fit, its evidence, its assessment, what to measure next, and what is
-//! asked to be fitted also.
+//! Calls of the page's Calibrate tab: `tracks` and `calibrate`, like the commands of those names, for files dropped on the page. A
+//! campaign is fitted in separate steps, because each takes long: fit, evidence, assessment, advice on the next measurement, and
+//! additional parameters.
 
 mod answers;
 mod data;
@@ -16,7 +16,7 @@ use crate::calls::{Call, Lab, Outcome, json, parsed};
 use answers::{EvidenceAnswer, FitAnswer, FurtherAnswer};
 use data::Dropped;
 
-/// The calls, by name.
+/// Calls by name.
 pub(crate) const CALLS: &[(&str, Call)] = &[
     ("tracks", tracks),
     ("calibrate", fit),
@@ -27,7 +27,7 @@ pub(crate) const CALLS: &[(&str, Call)] = &[
     ("calibrate close", close),
 ];
 
-/// A fit, and what was found out about it.
+/// Fit with the results of its later steps.
 struct Fitted {
     campaign: Campaign,
     found: CampaignFit,
@@ -39,7 +39,7 @@ struct Numbered {
     number: u32,
 }
 
-/// What one tracking file holds, under the keys of `swimmer tracks --json`. Takes [`Dropped`] files.
+/// Summary of one tracking file, with the keys of `swimmer tracks --json`. Takes [`Dropped`] files.
 fn tracks(_: &mut Lab, bytes: &[u8]) -> Outcome {
     let dropped = Dropped::read(bytes)?;
     let (name, file) = dropped.only()?;
@@ -48,7 +48,7 @@ fn tracks(_: &mut Lab, bytes: &[u8]) -> Outcome {
     json(&survey)
 }
 
-/// Fits the campaign among dropped files, and keeps the fit under the number in the answer.
+/// Fits the campaign among dropped files and stores the fit under the returned number.
 fn fit(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let dropped = Dropped::read(bytes)?;
     let campaign = dropped.campaign()?;
@@ -76,7 +76,7 @@ fn evidence(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     json(&EvidenceAnswer::new(weighed, &names))
 }
 
-/// What to make of a fit.
+/// Assessment of a fit.
 fn assessment(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let Numbered { number } = parsed(bytes)?;
     let fitted: &mut Fitted = lab.kept.get(number)?;
@@ -85,14 +85,14 @@ fn assessment(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     json(&assessed.document(&fitted.found, |file| file.display().to_string()))
 }
 
-/// A fit, and the words of `--fit-also`.
+/// Number of a fit, and the words of `--fit-also`.
 #[derive(Deserialize)]
 struct Asked {
     number: u32,
     also: Vec<String>,
 }
 
-/// Fits more than `r_s` and χ.
+/// Fits parameters in addition to `r_s` and χ.
 fn further(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let Asked { number, also } = parsed(bytes)?;
     let fitted: &mut Fitted = lab.kept.get(number)?;
@@ -105,14 +105,14 @@ fn further(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     json(&FurtherAnswer::new(&fit))
 }
 
-/// What to measure next.
+/// Advice on the next measurement.
 fn advice(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let Numbered { number } = parsed(bytes)?;
     let fitted: &mut Fitted = lab.kept.get(number)?;
     json(&advise(&fitted.campaign, &fitted.found).map_err(|why| why.to_string())?)
 }
 
-/// Lets go of a fit.
+/// Releases a fit.
 fn close(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let Numbered { number } = parsed(bytes)?;
     lab.kept.drop(number);

@@ -1,7 +1,7 @@
-//! The table of calls, and what lives from one call to the next.
+//! Table of calls, and the state between calls.
 //!
-//! A room of the page adds its calls as one table of its own (`[(&str, Call)]`) to `TABLES`. What must live longer than a call
-//! (a session, a robot) is put into [`Lab::kept`] and known to the page by its number.
+//! Each tab of the page adds its calls as one table (`[(&str, Call)]`) to `TABLES`. Objects that outlive a call, such as a session
+//! or a robot, are stored in [`Lab::kept`], and the page refers to them by number.
 
 use std::any::Any;
 use std::collections::BTreeMap;
@@ -16,22 +16,22 @@ use crate::drive;
 #[cfg(feature = "explore")]
 use crate::explore;
 
-/// What a call answers.
+/// Output of a call.
 #[derive(Debug, PartialEq)]
 pub enum Answer {
-    /// One JSON document.
+    /// JSON document.
     Json(String),
-    /// Numbers or a file, as the call tells: little-endian.
+    /// Numbers (little-endian) or a file, depending on the call.
     Bytes(Vec<u8>),
 }
 
-/// Answered, or the reason why not, in one sentence for the reader.
+/// Output, or an error message of one sentence for the user.
 pub type Outcome = Result<Answer, String>;
 
-/// A call: what lives on, and the bytes that the page wrote (JSON unless the call says otherwise).
+/// Call: takes the state and the bytes that the page wrote (JSON unless the call documents another format).
 pub type Call = fn(&mut Lab, &[u8]) -> Outcome;
 
-/// Every call, room by room.
+/// All calls, by tab.
 const TABLES: &[&[(&str, Call)]] = &[
     #[cfg(feature = "explore")]
     explore::CALLS,
@@ -41,12 +41,12 @@ const TABLES: &[&[(&str, Call)]] = &[
     calibration::CALLS,
 ];
 
-/// What lives from one call to the next.
+/// State between calls.
 #[derive(Default)]
 pub struct Lab {
-    /// Things that the page knows by number.
+    /// Objects to which the page refers by number.
     pub kept: Kept,
-    /// What explore has read and mapped last.
+    /// Last height map of the Explore tab.
     #[cfg(feature = "explore")]
     pub explore: explore::Memory,
 }
@@ -54,7 +54,7 @@ pub struct Lab {
 /// Performs a call by name.
 ///
 /// # Errors
-/// No call has the name, or the call itself has a reason.
+/// The name is unknown, or the call fails.
 pub fn call(lab: &mut Lab, name: &[u8], bytes: &[u8]) -> Outcome {
     let perform = TABLES
         .iter()
@@ -69,35 +69,35 @@ pub fn call(lab: &mut Lab, name: &[u8], bytes: &[u8]) -> Outcome {
     }
 }
 
-/// The JSON that a call takes.
+/// Parses the JSON arguments of a call.
 ///
 /// # Errors
-/// It is none, or lacks a key.
+/// The JSON is invalid or lacks a key.
 pub fn parsed<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, String> {
     serde_json::from_slice(bytes).map_err(|why| format!("reading what the page asked: {why}"))
 }
 
-/// The answer as JSON.
+/// Returns an output as JSON.
 ///
 /// # Errors
-/// A key is no text.
+/// A key is not a string.
 pub fn json<T: Serialize>(answer: &T) -> Outcome {
     serde_json::to_string(answer)
         .map(Answer::Json)
         .map_err(|why| format!("writing the answer: {why}"))
 }
 
-/// The answer as numbers, one behind the other.
+/// Returns an output as consecutive numbers.
 ///
 /// # Errors
-/// None; the type is that of a call.
+/// Never fails; the type is that of a call.
 pub fn numbers(values: impl IntoIterator<Item = f64>) -> Outcome {
     Ok(Answer::Bytes(
         values.into_iter().flat_map(f64::to_le_bytes).collect(),
     ))
 }
 
-/// Things that outlive a call, by number.
+/// Objects that outlive a call, by number.
 #[derive(Default)]
 pub struct Kept {
     things: BTreeMap<u32, Box<dyn Any>>,
@@ -105,17 +105,17 @@ pub struct Kept {
 }
 
 impl Kept {
-    /// Keeps a thing and numbers it.
+    /// Stores an object and returns its number.
     pub fn keep<T: 'static>(&mut self, thing: T) -> u32 {
         self.last += 1;
         self.things.insert(self.last, Box::new(thing));
         self.last
     }
 
-    /// A thing by its number.
+    /// Returns an object by its number.
     ///
     /// # Errors
-    /// There is none of that number and kind.
+    /// No object has this number and type.
     pub fn get<T: 'static>(&mut self, number: u32) -> Result<&mut T, String> {
         self.things
             .get_mut(&number)
@@ -123,7 +123,7 @@ impl Kept {
             .ok_or_else(|| format!("looking for number {number}: it is gone; open it again"))
     }
 
-    /// Lets go of a thing.
+    /// Releases an object.
     pub fn drop(&mut self, number: u32) {
         self.things.remove(&number);
     }

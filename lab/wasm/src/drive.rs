@@ -1,7 +1,7 @@
-//! What the drive room calls: the host's session, the twin in the page, and an ear for pages that only watch.
+//! Calls of the Drive tab: the host's session, the twin in the page, and a decoder for spectator pages.
 //!
-//! A session has no port here: the page carries its bytes, over Web Serial, a WebSocket, or to the twin beside it. What a call
-//! takes in bytes begins with the number of the thing and the page's time, `[u32][f64 s]`, little-endian.
+//! A session has no port here: the page transports its bytes over Web Serial, over a WebSocket, or to the twin in the page. The
+//! binary arguments of a call begin with the number of the object and the page's time, `[u32][f64 s]`, little-endian.
 
 mod host;
 mod memory_port;
@@ -14,7 +14,7 @@ use std::time::Duration;
 
 use crate::calls::{Call, Lab, Outcome, json, parsed};
 
-/// The calls, by name.
+/// Calls by name.
 pub const CALLS: &[(&str, Call)] = &[
     ("session open", host::open),
     ("session step", host::step),
@@ -35,7 +35,7 @@ pub const CALLS: &[(&str, Call)] = &[
     ("preflight", preflight::preflight),
 ];
 
-/// A number, a time and the bytes behind them.
+/// Splits arguments into number, time and the remaining bytes.
 fn step_of(bytes: &[u8]) -> Result<(u32, Duration, &[u8]), String> {
     let short = || "stepping: the page sent less than a number and a time".to_owned();
     let (number, bytes) = bytes.split_first_chunk().ok_or_else(short)?;
@@ -44,26 +44,26 @@ fn step_of(bytes: &[u8]) -> Result<(u32, Duration, &[u8]), String> {
     Ok((u32::from_le_bytes(*number), now, bytes))
 }
 
-/// A time that the page tells.
+/// Converts a time of the page.
 fn seconds_of(seconds: f64) -> Result<Duration, String> {
     Duration::try_from_secs_f64(seconds)
         .map_err(|why| format!("reading the page's time {seconds} s: {why}"))
 }
 
-/// Lets go of a session, a robot or an ear.
+/// Releases a session, a robot or a decoder.
 fn close(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let Numbered { number } = parsed(bytes)?;
     lab.kept.drop(number);
     json(&serde_json::json!({}))
 }
 
-/// What names a thing and nothing else.
+/// Arguments with only the number of an object.
 #[derive(serde::Deserialize)]
 struct Numbered {
     number: u32,
 }
 
-/// What was opened.
+/// Number of a new object.
 #[derive(serde::Serialize)]
 struct Opened {
     number: u32,

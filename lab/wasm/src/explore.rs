@@ -1,5 +1,5 @@
-//! What the page's Explore calls: `swimmer`, `simulate`, `certify`, `optimize`, `height-map`, as the commands of those names, and
-//! what only a picture needs.
+//! Calls of the Explore tab: `swimmer`, `simulate`, `certify`, `optimize`, `height-map`, like the commands of those names, and
+//! additional data for the figures.
 
 mod bounds;
 mod certify;
@@ -13,7 +13,7 @@ use crate::calls::Call;
 
 pub use map::Memory;
 
-/// The calls, by name.
+/// Calls by name.
 pub(crate) const CALLS: &[(&str, Call)] = &[
     ("swimmer", swimmer::swimmer),
     ("net", simulate::net),
@@ -48,7 +48,7 @@ mod tests {
         }
     }
 
-    /// An optimum goes out as a file, comes back as one, and swims what it promised.
+    /// An optimum written to a file and read again has the same displacement and passes its certificate.
     #[test]
     fn an_optimum_swims_what_it_promises_and_holds_its_conditions() {
         let mut lab = Lab::default();

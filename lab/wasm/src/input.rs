@@ -1,4 +1,4 @@
-//! What many calls take: a swimmer, a gait. Each is read by the room that reads it for the command line.
+//! Common arguments of calls: a swimmer and a gait, parsed by the same crates as on the command line.
 
 use std::cell::RefCell;
 use std::path::Path;
@@ -9,17 +9,17 @@ use serde_json::Value;
 use swimmer_files::{AnyGait, GaitFile, GaitSpec, SwimmerFile};
 use swimmer_model::Model;
 
-/// A swimmer as on the command line: the name of a preset, or the text of a swimmer file.
+/// Swimmer: the name of a preset, or the text of a swimmer file.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 pub(crate) struct SwimmerText(String);
 
 thread_local! {
-    /// The swimmer that was read last: a hand that drags a gait asks with the same one at every step.
+    /// Last parsed swimmer, since dragging a gait passes the same one at every step.
     static READ: RefCell<Option<(SwimmerText, SwimmerFile)>> = const { RefCell::new(None) };
 }
 
 impl SwimmerText {
-    /// Reads it.
+    /// Parses the swimmer.
     pub(crate) fn read(&self) -> Result<SwimmerFile, String> {
         let known = READ.with_borrow(|last| {
             let same = last.as_ref().filter(|(text, _)| text == self);
@@ -41,7 +41,7 @@ impl SwimmerText {
         }
     }
 
-    /// Reads it and makes its model.
+    /// Parses the swimmer and creates its model.
     pub(crate) fn model(&self) -> Result<(SwimmerFile, Model<f64>), String> {
         let file = self.read()?;
         let model = Model::new(&file.swimmer)
@@ -50,17 +50,18 @@ impl SwimmerText {
     }
 }
 
-/// A gait: `circle:AMPLITUDE`, `square:AMPLITUDE`, the text of a gait file, or bare samples.
+/// Gait: `circle:AMPLITUDE`, `square:AMPLITUDE`, the text of a gait file, or samples.
 #[derive(Debug, Deserialize)]
 #[serde(try_from = "Value")]
 pub(crate) enum GaitText {
-    /// As on the command line, or a file's text.
+    /// Name as on the command line, or the text of a file.
     Text(String),
-    /// The cycle in even steps, φ₁ and φ₂ \[rad\] in turn, without the last sample, which is the first.
+    /// Cycle in equal steps, φ₁ and φ₂ \[rad\] in turn, without the last sample, which equals the first.
     Even(Vec<f64>),
 }
 
-/// By way of a value, and not untagged: serde would buffer numbers, which then depends on what other crates ask of `serde_json`.
+/// Conversion from a value instead of an untagged enum, whose buffered numbers depend on features of `serde_json` that other crates
+/// enable.
 impl TryFrom<Value> for GaitText {
     type Error = &'static str;
 
@@ -78,12 +79,12 @@ impl TryFrom<Value> for GaitText {
     }
 }
 
-/// Samples that a circle or a square is written and asked by, as `swimmer certify` asks them.
+/// Number of samples of a circle or a square, as in `swimmer certify`.
 #[cfg(feature = "explore")]
 const SAMPLES: usize = 1024;
 
 impl GaitText {
-    /// The gait.
+    /// Parses the gait.
     pub(crate) fn read(&self) -> Result<AnyGait, String> {
         match self {
             Self::Text(text) => match closed_form(text)? {
@@ -94,7 +95,7 @@ impl GaitText {
         }
     }
 
-    /// The gait with all that a file tells.
+    /// Parses the gait with the header of its file.
     #[cfg(feature = "explore")]
     pub(crate) fn file(&self) -> Result<GaitFile, String> {
         match self {
@@ -111,7 +112,7 @@ fn of_file(file: &GaitFile) -> Result<AnyGait, String> {
     AnyGait::from_file(file).map_err(|why| format!("reading the gait: {why}"))
 }
 
-/// A file's text has several lines; one line is a closed form or a mistake.
+/// Parses a text of one line as a closed form. Returns `None` for several lines, which are the text of a file.
 fn closed_form(text: &str) -> Result<Option<AnyGait>, String> {
     if text.contains('\n') {
         return Ok(None);

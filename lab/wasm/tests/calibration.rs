@@ -1,4 +1,4 @@
-//! The calls of the calibrate room: dropped files are fitted as the library fits them.
+//! Calls of the Calibrate tab: dropped files give the same fit as the library.
 #![cfg(feature = "calibrate")]
 
 use calibrate::{CampaignData, FitOptions, calibrate_campaign};
@@ -21,7 +21,7 @@ fn packed(files: &[(&str, &str)]) -> Vec<u8> {
     bytes
 }
 
-/// Results of four circles, as somebody wrote them down.
+/// Stated results of four circles.
 fn campaign(swimmer: &str) -> String {
     let runs = [
         (40, 1.77, 9.9, 26.0),

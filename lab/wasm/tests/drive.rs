@@ -1,11 +1,11 @@
-//! The calls of the drive room, as the page makes them: a session, the twin, and the bytes carried between the two.
+//! Calls of the Drive tab: a session, the twin, and the transport of bytes between the two.
 
 use link_protocol::Direction;
 use serde_json::{Value, json};
 use swimmer_files::read_link_log;
 use swimmer_lab::calls::{Answer, Lab, call};
 
-/// A page: module, clock, a session and the robot it talks to.
+/// Page: module, clock, a session and its robot.
 struct Page {
     lab: Lab,
     now: f64,
@@ -61,7 +61,7 @@ impl Page {
         bytes(call(&mut self.lab, name.as_bytes(), &question).unwrap())
     }
 
-    /// Ten milliseconds of everything.
+    /// Advances session and robot by ten milliseconds.
     fn step(&mut self) {
         self.now += 0.01;
         let to_robot = std::mem::take(&mut self.to_robot);
@@ -79,7 +79,7 @@ impl Page {
             .extend(told["events"].as_array().unwrap().iter().cloned());
     }
 
-    /// Asks the robot something, and waits for the event that ends it.
+    /// Sends a request to the robot and waits for the event that ends it.
     fn asked(&mut self, name: &str, question: Value) -> Value {
         let mut question = question;
         question["number"] = json!(self.session);

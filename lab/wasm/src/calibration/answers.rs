@@ -1,4 +1,4 @@
-//! The answers, under the keys of `swimmer calibrate --json` and of its evidence, and what only pictures need.
+//! Outputs of the calls, with the keys of `swimmer calibrate --json` and of its evidence, and additional data for the figures.
 
 use calibrate::evidence::{CurvePoint, Evidence, EvidenceDocument, Pair};
 use calibrate::{
@@ -8,10 +8,10 @@ use calibrate::{
 use serde::Serialize;
 use swimmer_files::{Campaign, GaitSpec};
 
-/// The fit.
+/// Output of the fit.
 #[derive(Serialize)]
 pub(super) struct FitAnswer {
-    /// What the later steps name it by.
+    /// Number by which the later steps refer to the fit.
     number: u32,
     runs: Vec<Run>,
     sphere_radius_m: f64,
@@ -20,11 +20,11 @@ pub(super) struct FitAnswer {
     intervals: Intervals,
     correlation: f64,
     c_t_form: String,
-    /// The mean of the runs' servos.
+    /// Mean over the runs of the measured servos.
     servos: Option<[MeasuredServo; 2]>,
     excluded: Vec<Excluded>,
     warnings: Vec<String>,
-    /// The fitted swimmer's file.
+    /// Swimmer file of the fitted swimmer.
     swimmer: String,
 }
 
@@ -32,7 +32,7 @@ pub(super) struct FitAnswer {
 struct Run {
     file: String,
     gait: String,
-    /// Of a circle, with the sign that its displacement is counted by.
+    /// Amplitude of a circle, with the sign of its sense.
     amplitude_rad: Option<f64>,
     clockwise: bool,
     cycles: Option<usize>,
@@ -44,14 +44,14 @@ struct Run {
     delta_theta_rad: f64,
     delta_theta_sd_rad: f64,
     period_s: f64,
-    /// Start \[s\] and displacement \[m\] of each cycle that counts.
+    /// Start \[s\] and displacement \[m\] of each valid cycle.
     each: Vec<[f64; 2]>,
     left_out: Vec<Excluded>,
-    /// What the servos made of their commands, front and back, where reflectors on the side links showed it.
+    /// Actual angles of the servos relative to the commanded ones, front and back, if reflectors on the side links show them.
     servos: Option<[MeasuredServo; 2]>,
     /// x, y \[m\] of the middle link, thinned.
     path: Vec<[f64; 2]>,
-    /// Of its track.
+    /// Notes on the track.
     diagnoses: Vec<String>,
     warnings: Vec<String>,
 }
@@ -62,7 +62,7 @@ struct Excluded {
     reason: String,
 }
 
-/// Points of a drawn path.
+/// Largest number of points of a plotted path.
 const PATH: usize = 600;
 
 impl Run {
@@ -160,12 +160,12 @@ impl FitAnswer {
     }
 }
 
-/// What was fitted also: as `further` of the command.
+/// Output of a fit with additional parameters, like `further` of the command.
 #[derive(Serialize)]
 pub(super) struct FurtherAnswer<'a> {
     #[serde(flatten)]
     fit: &'a FurtherFit,
-    /// The swimmer's file with all that it can hold of it.
+    /// Swimmer file with the fitted values for which it has keys.
     swimmer: String,
 }
 
@@ -178,19 +178,19 @@ impl<'a> FurtherAnswer<'a> {
     }
 }
 
-/// What speaks for the fit.
+/// Evidence for the fit.
 #[derive(Serialize)]
 pub(super) struct EvidenceAnswer<'a> {
-    /// What the command leaves as `evidence.json`.
+    /// Content of the command's `evidence.json`.
     #[serde(flatten)]
     document: EvidenceDocument<'a>,
-    /// Of the bootstrap, thinned.
+    /// Samples of the bootstrap, thinned.
     draws: Vec<Pair>,
     start_curve: Vec<CurveAnswer>,
     fitted_curve: Vec<CurveAnswer>,
 }
 
-/// Draws that a picture holds.
+/// Largest number of bootstrap samples in a figure.
 const DRAWS: usize = 400;
 
 #[derive(Serialize)]

@@ -1,4 +1,4 @@
-//! Dropped files as the campaign wants them: nothing is looked for anywhere else.
+//! Dropped files as the source of a campaign's data; no other files are read.
 
 use std::io;
 use std::path::Path;
@@ -9,7 +9,7 @@ use swimmer_files::Campaign;
 
 use crate::calls::parsed;
 
-/// Files by name: the length of a JSON list `[{"name", "length"}]` as four bytes, little-endian, the list, the files' bytes.
+/// Files by name. Format: the length of a JSON list `[{"name", "length"}]` as four bytes, little-endian; the list; the files' bytes.
 pub(super) struct Dropped<'a>(Vec<(String, &'a [u8])>);
 
 #[derive(Deserialize)]
@@ -34,7 +34,7 @@ impl<'a> Dropped<'a> {
         Ok(Self(files))
     }
 
-    /// The one file that was dropped.
+    /// Returns the only file; fails if there are several.
     pub(super) fn only(&self) -> Result<(&str, &'a [u8]), String> {
         match self.0.as_slice() {
             [(name, file)] => Ok((name, file)),
@@ -45,7 +45,7 @@ impl<'a> Dropped<'a> {
         }
     }
 
-    /// By its name; folders are not dropped, so that only the last part counts.
+    /// Returns a file by its name. Only the last part of the path counts, because folders cannot be dropped.
     fn find(&self, path: &Path) -> Result<&'a [u8], &'static str> {
         let wanted = path.file_name();
         let mut files = self.0.iter();
@@ -55,7 +55,7 @@ impl<'a> Dropped<'a> {
         Ok(file)
     }
 
-    /// The campaign file: the TOML file with runs.
+    /// Campaign file: the TOML file with runs.
     pub(super) fn campaign(&self) -> Result<Campaign, String> {
         let is_campaign = |file: &[u8]| file.windows(7).any(|part| part == b"[[run]]");
         let (name, _) = self
@@ -71,7 +71,7 @@ impl<'a> Dropped<'a> {
             .map_err(|why| why.to_string())
     }
 
-    /// What [`CampaignData::load`] reads, of these files.
+    /// Data of the campaign, as [`CampaignData::load`] reads them, from these files.
     pub(super) fn data(&self, campaign: &Campaign) -> Result<CampaignData, String> {
         let open = |path: &Path| self.find(path).map_err(io::Error::other);
         CampaignData::load_by(campaign, open).map_err(|why| why.to_string())

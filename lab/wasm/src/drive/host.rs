@@ -1,4 +1,4 @@
-//! The host's session with a robot that the page reaches.
+//! Host's session with a robot to which the page has a connection.
 
 use std::sync::mpsc;
 use std::time::Duration;
@@ -17,38 +17,38 @@ use super::{Numbered, Opened, seconds_of, step_of, told};
 use crate::calls::{Answer, Lab, Outcome, json, parsed};
 use crate::input::GaitText;
 
-/// Frames that a log keeps, about two hours of a robot that plays; older ones make room.
+/// Largest number of frames in a log, about two hours of play; older frames are dropped.
 const LONGEST_LOG: usize = 400_000;
-/// How long an upload may take before it is given up.
+/// Time limit of an upload.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// Shows each frame that passes.
+/// Receiver of each traced frame.
 type Sink = Box<dyn FnMut(TracedFrame<'_>) + Send>;
 
-/// A session, and every frame of it.
+/// Session with the log of its frames.
 struct Host {
     session: Session,
     port: TracedPort<MemoryPort, Sink>,
     passed: mpsc::Receiver<LinkFrame>,
     log: Vec<LinkFrame>,
-    /// Frames that made room.
+    /// Number of dropped frames.
     forgotten: usize,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Open {
-    /// Differs between pages and between their sessions.
+    /// Seed, different for each page and session.
     seed: u64,
-    /// What the line carries.
+    /// Capacity of the line.
     bytes_per_second: f64,
-    /// When the page's clock began, seconds since 1970.
+    /// Start of the page's clock in seconds since 1970.
     epoch_s: f64,
-    /// The text of a key file.
+    /// Text of a key file.
     key: Option<String>,
 }
 
-/// Opens a session that has not greeted yet.
+/// Opens a session without sending the greeting.
 pub(super) fn open(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let asked: Open = parsed(bytes)?;
     let key = asked
@@ -60,7 +60,7 @@ pub(super) fn open(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let (passes, passed) = mpsc::channel();
     let sink: Sink = Box::new(move |frame| {
         let at = epoch + frame.at;
-        // The session that listens is gone only when this sink is.
+        // The receiver exists as long as this sink.
         let _ = passes.send(LinkFrame {
             direction: frame.direction,
             host_time_ns: u64::try_from(at.as_nanos()).unwrap_or(u64::MAX),
@@ -84,8 +84,8 @@ pub(super) fn open(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     })
 }
 
-/// Bytes that came, and a time: what is to be sent now, and what happened. Answers `[u32][bytes to be sent][JSON]`, the number
-/// being how many are to be sent.
+/// Passes received bytes and the time to the session. Returns `[u32][bytes to send][JSON events]`; the number is the count of
+/// bytes to send.
 pub(super) fn step(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let (number, now, received) = step_of(bytes)?;
     let host: &mut Host = lab.kept.get(number)?;
@@ -134,7 +134,7 @@ impl Host {
     }
 }
 
-/// Names a session and tells the time, for what is asked of it.
+/// Session and time of a request.
 #[derive(Deserialize)]
 struct At {
     number: u32,
@@ -159,7 +159,7 @@ struct Asked {
     request: Request,
 }
 
-/// Asks something of the robot, in the link's own words (`"Stop"`, `{"ClearEStop": {"count": 1}}`).
+/// Sends a request to the robot, given as JSON of the link protocol (`"Stop"`, `{"ClearEStop": {"count": 1}}`).
 pub(super) fn request(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let Asked {
         number,
@@ -177,7 +177,7 @@ struct Upload {
     gait: GaitText,
 }
 
-/// Sends a gait, as the table that `swimmer robot upload` makes of it.
+/// Uploads a gait as the same table as `swimmer robot upload`.
 pub(super) fn upload(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let Upload {
         number,
@@ -191,14 +191,14 @@ pub(super) fn upload(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     ticket(host.session.upload(now, 0, table.bytes(), now + PATIENCE))
 }
 
-/// Breaks an upload off.
+/// Cancels an upload.
 pub(super) fn cancel_upload(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let At { number, .. } = parsed(bytes)?;
     lab.kept.get::<Host>(number)?.session.cancel_upload();
     json(&json!({}))
 }
 
-/// How the link does.
+/// Statistics of the link.
 pub(super) fn link(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let Numbered { number } = parsed(bytes)?;
     let host: &mut Host = lab.kept.get(number)?;
@@ -213,7 +213,7 @@ pub(super) fn link(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     }))
 }
 
-/// Every frame so far as MCAP, as `swimmer robot log` writes it.
+/// Logged frames as MCAP, as `swimmer robot log` writes them.
 pub(super) fn log(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let Numbered { number } = parsed(bytes)?;
     let host: &mut Host = lab.kept.get(number)?;

@@ -1,4 +1,4 @@
-//! A port whose other end is the page: bytes and times are put in and taken out.
+//! Port in memory, whose bytes and times the page provides and takes.
 
 use std::collections::VecDeque;
 use std::io;
@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use host_link::Port;
 
-/// Bytes in both directions, and what time it is.
+/// Bytes in both directions, and the current time.
 #[derive(Debug, Default)]
 pub(super) struct MemoryPort {
     pub(super) now: Duration,

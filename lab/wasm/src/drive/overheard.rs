@@ -1,4 +1,4 @@
-//! What a robot tells another host: for a page that watches.
+//! Decoder of the telemetry that a robot sends to another host, for spectator pages.
 
 use link_protocol::{Decoder, Message};
 use serde_json::{Value, json};
@@ -6,14 +6,14 @@ use serde_json::{Value, json};
 use super::{Opened, step_of, told};
 use crate::calls::{Lab, Outcome, json};
 
-/// Listens from now on.
+/// Opens a decoder.
 pub(super) fn open(lab: &mut Lab, _bytes: &[u8]) -> Outcome {
     json(&Opened {
         number: lab.kept.keep(Decoder::new()),
     })
 }
 
-/// Bytes that were overheard, and the telemetry in them. A signature is read past: who watches has no key.
+/// Returns the telemetry in received bytes. Signatures are skipped, because a spectator has no key.
 pub(super) fn step(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let (number, now, received) = step_of(bytes)?;
     let decoder: &mut Decoder = lab.kept.get(number)?;

@@ -14,9 +14,9 @@ use crate::input::{GaitText, SwimmerText};
 struct Asked {
     swimmer: SwimmerText,
     gait: GaitText,
-    /// Of a cycle.
+    /// Period of a cycle.
     period_s: f64,
-    /// The robot's own, where one is connected.
+    /// Configuration of the connected robot, if any.
     robot: Option<Connected>,
 }
 
@@ -56,7 +56,7 @@ pub(super) fn preflight(_lab: &mut Lab, bytes: &[u8]) -> Outcome {
         .map(|stage| json!({ "by": stage.stage.word(), "loss_share": told.share(stage.loss) }))
         .collect();
     json(&json!({
-        // Of the table that an upload sends: the robot names its own by the same.
+        // Checksum of the table that an upload sends; the robot reports the checksum of its own table.
         "crc32": crc32,
         "period_s": asked.period_s,
         "min_period_s": told.verdict.min_period,
@@ -66,7 +66,7 @@ pub(super) fn preflight(_lab: &mut Lab, bytes: &[u8]) -> Outcome {
         "losses": losses,
         "refused": told.refusal(),
         "warnings": told.warnings(),
-        // Nothing is known of the servos but what a good one is.
+        // `true` if the values of a good servo are assumed.
         "servo_assumed": file.servo.is_none(),
         "configured_as": asked.robot.map(|robot| is_configured_as(&robot.configuration, &file.swimmer)),
     }))

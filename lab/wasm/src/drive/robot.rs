@@ -1,4 +1,4 @@
-//! The robot in the page: the brain that the firmware runs, in a virtual tank.
+//! Robot in the page: the control code of the firmware in a virtual tank.
 
 use std::time::Duration;
 
@@ -11,15 +11,15 @@ use super::{Numbered, Opened, step_of};
 use crate::calls::{Answer, Lab, Outcome, json, parsed};
 use crate::input::SwimmerText;
 
-/// Bytes a second of the line: a robot's.
+/// Bytes per second of the line, as for a real robot.
 const LINE: f64 = 11_520.0;
-/// Most that is let out at once: what the line carries in a fifth of a second.
+/// Largest burst: the capacity of the line in a fifth of a second.
 const MOST: usize = 2304;
 
-/// A twin behind a line of a robot's speed.
+/// Twin behind a line with the speed of a real one.
 struct Robot {
     twin: Twin,
-    /// Bytes that the line has carried room for since the twin was switched on, of which some were used.
+    /// Used capacity of the line since power-on, in bytes.
     used: f64,
 }
 
@@ -30,7 +30,7 @@ struct Open {
     seed: u64,
 }
 
-/// Switches a robot on: the one of the swimmer file, set up as its laboratory does it.
+/// Switches on the robot of a swimmer file, with its servos set up.
 pub(super) fn open(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let Open { swimmer, seed } = parsed(bytes)?;
     let file = swimmer.read()?;
@@ -41,7 +41,7 @@ pub(super) fn open(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     })
 }
 
-/// Bytes for the robot, and its time, since it was switched on: what it sends.
+/// Passes bytes and the time since power-on to the robot. Returns the bytes that it sends.
 pub(super) fn step(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let (number, now, received) = step_of(bytes)?;
     let robot: &mut Robot = lab.kept.get(number)?;
@@ -55,7 +55,7 @@ pub(super) fn step(lab: &mut Lab, bytes: &[u8]) -> Outcome {
 impl Robot {
     fn transmit(&mut self, now: Duration) -> Vec<u8> {
         let carried = now.as_secs_f64() * LINE;
-        // What the line was free for long ago is gone.
+        // Capacity that was unused long ago is lost.
         self.used = self.used.max(carried - MOST as f64);
         let mut out = Vec::new();
         #[allow(
@@ -70,7 +70,7 @@ impl Robot {
     }
 }
 
-/// How it truly stands: what the cameras over the tank would see, and what goes to the servos.
+/// True pose in the tank, as cameras would see it, and the pulses of the servos.
 pub(super) fn stands(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let Numbered { number } = parsed(bytes)?;
     let robot: &mut Robot = lab.kept.get(number)?;

@@ -1,10 +1,10 @@
-//! The session's events as JSON: the link's own types, under their own names.
+//! Events of the session as JSON, with the names of the link's types.
 
 use host_link::session::{Event, UploadPhase};
 use link_protocol::{HelloReply, Telemetry};
 use serde_json::{Value, json};
 
-/// An event; of a connection also who is there.
+/// Event as JSON; a connection includes the description of the robot.
 pub(super) fn event(event: &Event, hello: Option<&HelloReply>) -> Value {
     match event {
         Event::Connected { ticket, restarted } => {
@@ -41,7 +41,7 @@ pub(super) fn event(event: &Event, hello: Option<&HelloReply>) -> Value {
     }
 }
 
-/// What the robot told of itself, with its state and flags in words.
+/// Telemetry as JSON, with state and flags in words.
 pub(super) fn telemetry(told: &Telemetry) -> Value {
     json!({ "event": "telemetry", "telemetry": told })
 }

@@ -1,9 +1,9 @@
-//! Bounds and objective, as the command line names them.
+//! Bounds and objective, with the names of the command line.
 
 use gait_optimizer::{Bounds, Objective};
 use serde::Deserialize;
 
-/// Bounds on shapes, under the names of the command line's options.
+/// Bounds on shapes, with the names of the command line's options.
 #[derive(Debug, Clone, Copy, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct BoundsAsked {
@@ -26,7 +26,7 @@ impl From<BoundsAsked> for Bounds {
     }
 }
 
-/// An objective by its word; none for the file's own.
+/// Objective by its word. Returns `None` for the objective stored in the file.
 pub(super) fn objective(word: Option<&str>) -> Result<Option<Objective>, String> {
     word.map(|word| {
         word.parse()

@@ -1,4 +1,4 @@
-//! `certify`: holds a gait against the necessary conditions, under the keys of `swimmer certify --json`.
+//! `certify`: evaluates the necessary conditions for a gait, with the keys of `swimmer certify --json`.
 
 use gait_optimizer::{Bounds, Objective};
 use serde::Deserialize;

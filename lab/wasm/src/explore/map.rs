@@ -1,4 +1,4 @@
-//! `height-map` and `height-grid`: the height function as `swimmer height-map` tells it, and its values for a picture.
+//! `height-map` and `height-grid`: the height function as in `swimmer height-map`, and its values for a picture.
 
 use gait_optimizer::{HeightMap, LevelCurve, Row};
 use serde::{Deserialize, Serialize};
@@ -7,7 +7,7 @@ use swimmer_model::Swimmer;
 use crate::calls::{Lab, Outcome, json, numbers, parsed};
 use crate::input::SwimmerText;
 
-/// The frame found last: three rows, each coarse and fine, ask for the same one.
+/// Last height map: three rows, each on a coarse and a fine grid, use the same one.
 #[derive(Default)]
 pub struct Memory(Option<(Swimmer<f64>, HeightMap)>);
 
@@ -32,7 +32,7 @@ struct Asked {
     row: RowAsked,
     /// \[rad\]
     max_angle: f64,
-    /// Nodes along each axis, for the grid.
+    /// Number of grid nodes along each axis.
     #[serde(default)]
     count: usize,
 }
@@ -83,7 +83,7 @@ impl From<&LevelCurve> for Curve {
     }
 }
 
-/// The zero-level curves and the numbers of a row.
+/// Zero-level curves and numbers of a row.
 pub(super) fn height_map(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let asked: Asked = parsed(bytes)?;
     let file = asked.swimmer.read()?;
@@ -98,7 +98,7 @@ pub(super) fn height_map(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     })
 }
 
-/// The heights over an even grid, φ₁ running fastest.
+/// Heights on a uniform grid; φ₁ varies fastest.
 pub(super) fn height_grid(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let asked: Asked = parsed(bytes)?;
     let file = asked.swimmer.read()?;

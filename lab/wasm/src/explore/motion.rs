@@ -1,4 +1,4 @@
-//! `motion`: one cycle as a picture needs it, pose by pose, with the body and the fluid's force along it.
+//! `motion`: poses of one cycle for the animation, with the body and the force of the fluid along it.
 
 use serde::Deserialize;
 use swimmer_model::{Gait, Tolerance, trajectory};
@@ -10,7 +10,7 @@ use crate::input::{GaitText, SwimmerText};
 struct Asked {
     swimmer: SwimmerText,
     gait: GaitText,
-    /// Even steps of u.
+    /// Number of equal steps of u.
     intervals: usize,
 }
 

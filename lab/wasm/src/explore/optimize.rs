@@ -1,4 +1,4 @@
-//! `optimize`: the optimiser's gaits by the names of the commands, each with its certificate and its file.
+//! `optimize`: optimal gaits, with the names of the commands, each with its certificate and its file.
 
 use gait_optimizer::{
     Arc, Bounds, Branch, Certificate, DisplacementProblem, EfficiencyProblem, OptimalGait,
@@ -17,7 +17,7 @@ struct Asked {
     what: What,
     #[serde(default)]
     bounds: BoundsAsked,
-    /// For `speed`; the swimmer's servos' where it is left out \[rad/s\].
+    /// Largest rate for `speed` \[rad/s\]; default: that of the swimmer's servos.
     max_rate: Option<f64>,
 }
 
@@ -34,22 +34,22 @@ enum What {
 
 #[derive(Serialize)]
 struct Found {
-    /// Of the fastest |d|, else X.
+    /// |d|/L of the fastest gait, otherwise X/L.
     displacement_over_length: f64,
     displacement_m: f64,
     lateral_over_length: f64,
     rotation_rad: f64,
-    /// At constant power; of the fastest, as timed.
+    /// Efficiency at constant power; for the fastest gait with its own timing.
     efficiency: f64,
     start_angle_rad: f64,
     end_angle_rad: f64,
     arcs: Vec<Arc>,
     links_cross: f64,
     certificate: Certificate,
-    /// Of the fastest.
+    /// Period of the fastest gait.
     period_s: Option<f64>,
     speed_over_length_per_s: Option<f64>,
-    /// The gait file.
+    /// Text of the gait file.
     gait: String,
 }
 

@@ -1,4 +1,4 @@
-//! `net`, `simulate`, `gait-file` and `tank`: what one cycle brings, the file that says so anywhere, and how many cycles there is room for.
+//! `net`, `simulate`, `gait-file` and `tank`: motion of one cycle, its gait file, and the number of cycles up to a wall of a tank.
 
 use forecast::{NetMotion, Tank, shortest_period, until_wall};
 use serde::{Deserialize, Serialize};
@@ -13,7 +13,7 @@ use crate::input::{GaitText, SwimmerText};
 struct Asked {
     swimmer: SwimmerText,
     gait: GaitText,
-    /// Duration of a cycle, for rates \[s\].
+    /// Period of a cycle \[s\].
     #[serde(default = "one_second")]
     period: f64,
 }
@@ -22,31 +22,31 @@ const fn one_second() -> f64 {
     1.0
 }
 
-/// What follows a hand.
+/// Numbers that are updated while a gait is dragged.
 #[derive(Serialize)]
 struct Net {
     #[serde(flatten)]
     motion: NetMotion,
-    /// In the period asked for.
+    /// Mean speed with the given period.
     speed_m_per_s: f64,
     speed_over_length_per_s: f64,
 }
 
-/// One cycle, under the keys of `swimmer simulate --json`, and what the page tells beside it.
+/// Motion of one cycle, with the keys of `swimmer simulate --json`, and additional numbers of the page.
 #[derive(Serialize)]
 struct Swum {
     #[serde(flatten)]
     net: Net,
     links_cross: f64,
-    /// Largest |φ̇ᵢ| of each joint in the period asked for.
+    /// Largest |φ̇ᵢ| of each joint with the given period.
     peak_rates_rad_s: [f64; 2],
     /// Largest |φᵢ|.
     reach_rad: f64,
-    /// Fastest cycle that the swimmer's servos follow as parametrised, in seconds.
+    /// Shortest period \[s\] in which the servos can follow the gait as parametrised.
     shortest_period_s: Option<f64>,
 }
 
-/// Looks per cycle for the peak rates; a spline of 192 knots turns on ten of them.
+/// Samples per cycle for the peak rates: ten for each knot of a spline of 192 knots.
 const LOOKS: usize = 1920;
 
 impl Net {
@@ -61,14 +61,14 @@ impl Net {
     }
 }
 
-/// The net motion of a gait, at once.
+/// Net motion of a gait, computed quickly.
 pub(super) fn net(_: &mut Lab, bytes: &[u8]) -> Outcome {
     let asked: Asked = parsed(bytes)?;
     let (_, model) = asked.swimmer.model()?;
     json(&Net::of(&model, &asked.gait.read()?, asked.period))
 }
 
-/// Swims a gait, and looks at all of it.
+/// Simulates a gait and evaluates all quantities.
 pub(super) fn simulate(_: &mut Lab, bytes: &[u8]) -> Outcome {
     let asked: Asked = parsed(bytes)?;
     let (file, model) = asked.swimmer.model()?;
@@ -99,7 +99,7 @@ struct FileAsked {
     bounds: BoundsAsked,
 }
 
-/// The text of a gait file: of an optimiser's as it is, of any other with the swimmer that the page shows.
+/// Text of a gait file: unchanged for an optimal gait, otherwise with the swimmer of the page.
 pub(super) fn gait_file(_: &mut Lab, bytes: &[u8]) -> Outcome {
     let asked: FileAsked = parsed(bytes)?;
     let swimmer = asked.swimmer.read()?;
@@ -123,12 +123,12 @@ struct TankAsked {
 
 #[derive(Serialize)]
 struct TankAnswer {
-    /// None: it never meets a wall.
+    /// Number of cycles; `None` if the swimmer never reaches a wall.
     cycles: Option<f64>,
     part: Option<&'static str>,
 }
 
-/// How many cycles from the middle of a tank, heading along it.
+/// Number of cycles from the middle of a tank to a wall, heading along the tank.
 pub(super) fn tank(_: &mut Lab, bytes: &[u8]) -> Outcome {
     let asked: TankAsked = parsed(bytes)?;
     let (_, model) = asked.swimmer.model()?;

@@ -1,5 +1,5 @@
-//! `swimmer`: reads a swimmer and tells what it is, in the units of its file; and writes the file of one that the page's sliders
-//! made.
+//! `swimmer`: reads a swimmer, applies the values of the page's sliders, and returns its values in the units of the file and the
+//! text of its file.
 
 use serde::{Deserialize, Serialize};
 use swimmer_files::{ServoFile, SwimmerFile};
@@ -11,7 +11,7 @@ use crate::input::SwimmerText;
 #[derive(Deserialize)]
 struct Asked {
     swimmer: SwimmerText,
-    /// What the sliders say; what is left out stays.
+    /// Values of the sliders; missing ones are unchanged.
     #[serde(default)]
     with: With,
 }
@@ -39,7 +39,7 @@ struct Answer {
     back_m: f64,
     chi: f64,
     sphere_radius_m: f64,
-    /// The form that ties drag to viscosity, and its number.
+    /// Form of the relation between drag and viscosity, and its number.
     c_t_form: &'static str,
     c_t: f64,
     max_angle_rad: f64,
@@ -47,7 +47,7 @@ struct Answer {
     doubts: Vec<String>,
 }
 
-/// Reads, changes, tells.
+/// Reads a swimmer, changes it, and returns its values.
 pub(super) fn swimmer(_: &mut Lab, bytes: &[u8]) -> Outcome {
     let Asked { swimmer, with } = parsed(bytes)?;
     let mut file = swimmer.read()?;
