@@ -1,9 +1,9 @@
-/** The workspace's version and the commit that page and module were built from. */
+/** Version of the workspace and commit of page and module. */
 declare const VERSION: string;
 declare const HASH: string;
 
 declare module "worker:*" {
-  /** The bundled worker's script. */
+  /** Bundled script of the worker. */
   const source: string;
   export default source;
 }

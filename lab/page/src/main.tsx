@@ -1,4 +1,4 @@
-// Where the page begins: style, then the shell with its rooms.
+// Entry point of the page: style, then the frame with its tabs.
 
 import "./style/page.css";
 import { render } from "preact";
@@ -9,5 +9,5 @@ import { times } from "./wasm/lab.ts";
 const place = document.getElementById("app");
 if (place) render(<App />, place);
 
-// For whoever measures the page.
+// For measurements of the page.
 Object.assign(globalThis, { swimmerLab: { times, firstNumbers } });

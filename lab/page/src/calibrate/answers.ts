@@ -1,4 +1,4 @@
-// What the module answers, under the keys of `swimmer tracks --json` and `swimmer calibrate --json`, and what pictures need.
+// Outputs of the module, with the keys of `swimmer tracks --json` and `swimmer calibrate --json`, and data for the figures.
 
 export interface Holdings {
   format: string;
@@ -30,7 +30,7 @@ export interface Run {
   period_s: number;
   each: [number, number][];
   left_out: { what: string; reason: string }[];
-  /** Front and back, where reflectors on the side links showed them. */
+  /** Front and back, if reflectors on the side links show them. */
   servos: [Servo, Servo] | null;
   path: [number, number][];
   diagnoses: string[];
@@ -64,7 +64,7 @@ export interface Pair {
   chi: number;
 }
 
-/** What is left of a quantity of a run; null where it was not measured. */
+/** Residual of a quantity of a run; null if it was not measured. */
 export interface RunError {
   measured: number | null;
   predicted: number | null;
@@ -72,14 +72,14 @@ export interface RunError {
   standardised: number | null;
 }
 
-/** The command's `evidence.json`, and what pictures need beside it. */
+/** The command's `evidence.json`, and data for the figures. */
 export interface EvidenceAnswer {
   likelihood: { estimate: Pair; intervals: Intervals; correlation: number };
   run_errors: { file: string; x_m: RunError; delta_y_m: RunError; delta_theta_rad: RunError }[];
   profiles: { sphere_radius_m: Profile; chi: Profile };
-  /** The ln of the likelihood over its largest value, a row for each χ; borders of joint regions (rₛ [m], χ), once round. */
+  /** ln of the likelihood relative to its maximum, one row per χ; boundaries of joint regions (rₛ [m], χ) as closed curves. */
   ridge: { sphere_radius_m: number[]; chi: number[]; log_ratio: (number | null)[][]; contours: { level: number; corners: [number, number][] }[] };
-  /** Null of fewer than five runs. */
+  /** Null for fewer than five runs. */
   bootstrap: { draws: number; at_border: number; intervals: Intervals } | null;
   without_run: { file: string; paper: Pair; likelihood: Pair | null }[];
   outliers: { file: string; quantity: string; standard_errors: number }[];
@@ -94,7 +94,7 @@ export interface Profile {
   interval: [number | null, number | null];
 }
 
-/** What a servo made of its command; the error is null where nothing tells it. */
+/** Measured behaviour of a servo; the error is null if it is unknown. */
 export interface Servo {
   gain: Measured;
   dead_band_rad: Measured;
@@ -107,7 +107,7 @@ export interface Measured {
   error: number | null;
 }
 
-/** What was fitted also: the command's `further`, and the swimmer's file with all that it can hold of it. */
+/** Fit with additional parameters: the command's `further`, and the swimmer file with the values for which it has keys. */
 export interface FurtherAnswer {
   parameters: { name: string; unit: string; before: number; value: number; interval: [number, number]; bounds: [number, number] }[];
   level: number;
@@ -118,7 +118,7 @@ export interface FurtherAnswer {
   swimmer: string;
 }
 
-/** What to measure next, the most telling first: the command's `advice`. Widths with one run of it more, over those now. */
+/** Possible next measurements, the most useful first: the command's `advice`. Ratios of widths with one more run to the present ones. */
 export interface AdviceAnswer {
   period_s: number;
   candidates: { gait: string; sphere_radius_width: number; chi_width: number; both: number }[];
@@ -127,7 +127,7 @@ export interface AdviceAnswer {
 /** A value with its standard error. */
 type WithError = [number | null, number | null];
 
-/** What one run says by itself; null where it was not measured. */
+/** Statistics of one run; null if they were not measured. */
 export interface RunGoodness {
   file: string;
   y_over_x: WithError;
@@ -138,7 +138,7 @@ export interface RunGoodness {
   scale: [number, number] | null;
 }
 
-/** What is known by halves: as the files say and as the runs make it, each with its deviation. */
+/** Nuisance parameters: prior and fitted values, each with its standard deviation. */
 export interface Nuisance {
   name: string;
   unit: string;
@@ -148,12 +148,12 @@ export interface Nuisance {
   pull: number;
 }
 
-/** The command's answer under the same keys. */
+/** Output of the command with the same keys. */
 export interface AssessmentAnswer {
   verdict: "trust" | "caution" | "do not use";
   reasons: string[];
   reduced_chi2: number | null;
-  /** Left out where the runs are too few. */
+  /** Missing if there are too few runs. */
   intervals_with_systematics?: Intervals;
   headline: { by: "paper" | "systematics" } & Pair;
   goodness: {

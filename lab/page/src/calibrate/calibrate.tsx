@@ -1,4 +1,4 @@
-// Calibrate: tracking files and their campaign, dropped; tracks, cycles, X(ε), fit, evidence and verdict, as the command's report.
+// Calibrate tab: takes dropped tracking files and their campaign; shows tracks, cycles, X(ε), fit, evidence and verdict.
 
 import "./calibrate.css";
 import { download } from "../files/download.ts";

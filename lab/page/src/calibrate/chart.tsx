@@ -5,7 +5,7 @@ import type { ComponentChildren } from "preact";
 export const [WIDTH, HEIGHT] = [420, 300];
 export const MARGIN = { left: 64, right: 12, top: 10, bottom: 40 };
 
-/** Where values lie on the picture, and round numbers along both axes. */
+/** Scales from values to picture coordinates, and round numbers along both axes. */
 export interface Scale {
   x(value: number): number;
   y(value: number): number;
@@ -21,7 +21,7 @@ function rounded(low: number, high: number): number[] {
   return Array.from({ length: Math.floor(high / step) - first + 1 }, (_, k) => Number(((first + k) * step).toPrecision(6)));
 }
 
-/** A scale that holds all these values, with room at the ends. */
+/** Scale that contains all these values, with margins at both ends. */
 export function scale(xs: readonly number[], ys: readonly number[], room = 0.05): Scale {
   const ends = (values: readonly number[]): [number, number] => {
     const [low, high] = [Math.min(...values), Math.max(...values)];
@@ -36,7 +36,7 @@ export function scale(xs: readonly number[], ys: readonly number[], room = 0.05)
   };
 }
 
-/** A picture with axes, in a card. */
+/** Chart with axes, in a card. */
 export function Chart({ title, names, to, children }: { title: string; names: [string, string]; to: Scale; children: ComponentChildren }) {
   const [bottom, left] = [HEIGHT - MARGIN.bottom, MARGIN.left];
   return (
@@ -65,7 +65,7 @@ export const degrees = (radians: number) => (radians * 180) / Math.PI;
 
 type Point = readonly [number, number];
 
-/** Points of one kind, each with what it is. */
+/** Points of one kind, each with a description. */
 export function Dots({ of, to, kind, radius = 3.5 }: { of: readonly (readonly [Point, string])[]; to: Scale; kind: string; radius?: number }) {
   return (
     <g class={kind}>

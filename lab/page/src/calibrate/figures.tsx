@@ -1,20 +1,19 @@
-// The figures of a calibration: circles over the amplitude, profiles, the ridge of r_s and χ, what hangs on a single run, the ways
-// that were swum.
+// Figures of a calibration: results over the amplitude, profiles, ridge of r_s and χ, influence of single runs, paths of the swimmer.
 
 import { useMemo } from "preact/hooks";
 import type { CurvePoint, EvidenceAnswer, Pair, Profile as ProfileAnswer, Run } from "./answers.ts";
 import { Chart, degrees, Dots, HEIGHT, line, MARGIN, scale, type Scale, WIDTH } from "./chart.tsx";
 
-/** A file by its own name. */
+/** Name of a file without its folders. */
 export const short = (file: string) => file.split("/").pop() ?? file;
 
-/** A gait as people say it: circles in whole degrees. */
+/** Display name of a gait: circles in whole degrees. */
 export function named(run: Run): string {
   if (run.amplitude_rad === null) return short(run.gait);
   return `circle ${Number(degrees(run.amplitude_rad).toFixed(2))}°${run.clockwise ? " clockwise" : ""}`;
 }
 
-/** A quantity of a circle's cycle: its name, and where runs and curves have it, in the unit of the name. */
+/** Quantity of a circle's cycle: its name, and accessors for runs and curves in the unit of the name. */
 interface OfACircle {
   title: string;
   name: string;
@@ -43,7 +42,7 @@ const OF_A_CIRCLE: readonly OfACircle[] = [
   },
 ];
 
-/** What circles measure, with twice its standard deviation, and what the model makes of them. */
+/** Measured values of circles, with twice their standard deviation, and the values of the model. */
 export function OverAmplitude({ runs, evidence }: { runs: readonly Run[]; evidence: EvidenceAnswer | null }) {
   return <>{OF_A_CIRCLE.map((quantity) => <OneOverAmplitude key={quantity.title} of={quantity} runs={runs} evidence={evidence} />)}</>;
 }
@@ -70,7 +69,7 @@ function OneOverAmplitude({ of, runs, evidence }: { of: OfACircle; runs: readonl
   );
 }
 
-/** How far the likelihood falls as one parameter is held elsewhere, and where its interval ends. */
+/** Profile likelihood of one parameter, and the ends of its interval. */
 export function Profiles({ evidence: { profiles } }: { evidence: EvidenceAnswer }) {
   return (
     <>
@@ -95,8 +94,8 @@ function Profile({ title, name, of: { points, threshold }, factor }: { title: st
 const placed = ({ sphere_radius_m, chi }: Pair) => [sphere_radius_m * 1000, chi] as const;
 const AXES: [string, string] = ["rₛ [mm]", "χ"];
 
-/** The likelihood over both parameters, its joint regions (long and thin, because each makes up for the other) and the draws of the
- * bootstrap. */
+/** Likelihood over both parameters, its joint regions (long and thin, because the parameters compensate each other) and the samples
+* of the bootstrap. */
 export function Ridge({ evidence, paper }: { evidence: EvidenceAnswer; paper: Pair }) {
   const { ridge, draws, likelihood } = evidence;
   const regions = [...ridge.contours].sort((a, b) => b.level - a.level);
@@ -122,7 +121,7 @@ export function Ridge({ evidence, paper }: { evidence: EvidenceAnswer; paper: Pa
   );
 }
 
-/** The likelihood over its largest value, one cell of colour for each node of the grid. */
+/** Likelihood relative to its maximum, one coloured cell per node of the grid. */
 function LikelihoodMap({ of: { sphere_radius_m, chi, log_ratio }, to }: { of: EvidenceAnswer["ridge"]; to: Scale }) {
   const [columns, rows] = [sphere_radius_m.length, chi.length];
   const picture = useMemo(() => {
@@ -143,7 +142,7 @@ function LikelihoodMap({ of: { sphere_radius_m, chi, log_ratio }, to }: { of: Ev
   return <image href={picture} x={to.x(x0)} y={to.y(y1)} width={to.x(x1) - to.x(x0)} height={to.y(y0) - to.y(y1)} preserveAspectRatio="none" />;
 }
 
-/** Where both fits would be without each run: what hangs on a single one. */
+/** Both fits without each run, which shows the influence of a single run. */
 export function WithoutRun({ evidence, paper }: { evidence: EvidenceAnswer; paper: Pair }) {
   const without = evidence.without_run;
   if (without.length === 0) return null;
@@ -164,7 +163,7 @@ export function WithoutRun({ evidence, paper }: { evidence: EvidenceAnswer; pape
   );
 }
 
-/** What is left of each run at the likeliest estimate, in standard errors. */
+/** Residuals of each run at the maximum-likelihood estimate, in standard errors. */
 export function Residuals({ evidence }: { evidence: EvidenceAnswer }) {
   const of = (key: "x_m" | "delta_y_m" | "delta_theta_rad", name: string, aside: number) =>
     evidence.run_errors.flatMap((run, k) => {
@@ -188,7 +187,7 @@ export function Residuals({ evidence }: { evidence: EvidenceAnswer }) {
   );
 }
 
-/** The middle link's way in every run. */
+/** Path of the middle link in every run. */
 export function Paths({ runs }: { runs: readonly Run[] }) {
   const swum = runs.filter((run) => run.path.length > 0);
   if (swum.length === 0) return null;

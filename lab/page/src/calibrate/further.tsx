@@ -1,4 +1,4 @@
-// Beyond the fit: what else may be off, fitted where it is chosen, and what to measure next.
+// Additional parameters, fitted on request, and advice on the next measurement.
 
 import { figure } from "../explore/names.ts";
 import { download } from "../files/download.ts";
@@ -7,7 +7,7 @@ import { degrees } from "./chart.tsx";
 import { also, choose, further, noFurther } from "./model.ts";
 import { Head, Table } from "./tables.tsx";
 
-/** The words of `swimmer calibrate --fit-also`, and what each is. */
+/** Words of `swimmer calibrate --fit-also`, with descriptions. */
 const CHOICES: readonly (readonly [word: string, what: string])[] = [
   ["gain", "what the servos turn over what they are told"],
   ["gains", "the same, each servo’s"],
@@ -22,7 +22,7 @@ const CHOICES: readonly (readonly [word: string, what: string])[] = [
   ["distortion", "of the lens"],
 ];
 
-/** A value as people read it: mm, degrees, or the number. */
+/** Displayed value: in mm, in degrees, or as a number. */
 function readable(value: number, unit: string): string {
   if (unit === "m") return Math.abs(value) < 1 ? `${figure(value * 1000, 3)} mm` : `${figure(value, 6)} m`;
   if (unit === "rad") return `${figure(degrees(value), 3)}°`;
@@ -62,10 +62,10 @@ export function Further() {
   );
 }
 
-/** Lines of advice that people read; there are more. */
+/** Number of displayed lines of advice. */
 const SHOWN = 8;
 
-/** Gaits by how much one run of each would narrow the intervals. */
+/** Gaits, ordered by the narrowing of the intervals by one run of each. */
 export function Advice({ of: { period_s, candidates } }: { of: AdviceAnswer }) {
   const change = (width: number) => `${signed(100 * (width - 1))} %`;
   return (

@@ -1,4 +1,4 @@
-// Dropped files to a fit, step by step; each step is shown when it is there.
+// Fit of dropped files in steps; the result of each step is shown as soon as it is available.
 
 import { signal } from "@preact/signals";
 import { Lab, Latest } from "../wasm/lab.ts";
@@ -11,11 +11,11 @@ export const fit = signal<FitAnswer | null>(null);
 export const evidence = signal<EvidenceAnswer | null>(null);
 export const assessment = signal<AssessmentAnswer | null>(null);
 export const advice = signal<AdviceAnswer | null>(null);
-/** The words of `--fit-also` that are chosen, and what came of them: a fit, or the reason why there is none. */
+/** Selected words of `--fit-also`, and the result: a fit or an error message. */
 export const also = signal<readonly string[]>([]);
 export const further = signal<FurtherAnswer | null>(null);
 export const noFurther = signal("");
-/** What is computed now, and for how many seconds. */
+/** Present computation and its duration in seconds. */
 export const doing = signal<{ what: string; seconds: number } | null>(null);
 export const problem = signal("");
 
@@ -24,13 +24,13 @@ setInterval(() => {
 }, 1000);
 const begin = (what: string) => (doing.value = { what, seconds: 0 });
 
-/** Ends what is computed; what is there already stays. */
+/** Stops the computation; existing results stay. */
 export const stop = () => lab.stop(STOPPED);
 const STOPPED = "stopped; drop a file or open one to begin again";
 
 let dropped = new Map<string, Uint8Array>();
 
-/** Files as the module takes them: the list's length, the list, the files. */
+/** Files in the format of the module: length of the list, the list, the files. */
 function packed(files: readonly (readonly [string, Uint8Array])[]): Uint8Array {
   const list = new TextEncoder().encode(JSON.stringify(files.map(([name, { length }]) => ({ name, length }))));
   const bytes = new Uint8Array(4 + list.length + files.reduce((sum, [, file]) => sum + file.length, 0));
@@ -46,14 +46,14 @@ function packed(files: readonly (readonly [string, Uint8Array])[]): Uint8Array {
 
 const reason = (error: unknown) => (error instanceof Error ? error.message : String(error));
 
-/** While a campaign is fitted, what is fitted also waits for its end. */
+/** While a campaign is fitted, the fit of additional parameters waits. */
 let opening = false;
 
-/** Adds files to what is there; with a campaign among them, fits. */
+/** Adds files; if a campaign is among them, fits it. */
 export async function open(files: readonly File[]): Promise<void> {
   problem.value = "";
   opening = true;
-  // What was fitted of the files before is fitted anew at the end.
+  // Fits of additional parameters to the previous files are repeated at the end.
   [further.value, noFurther.value] = [null, ""];
   begin("reading the files");
   const unread: string[] = [];
@@ -62,11 +62,11 @@ export async function open(files: readonly File[]): Promise<void> {
     try {
       come.push([file.name, new Uint8Array(await file.arrayBuffer())]);
     } catch (error) {
-      // A folder, or a file that is gone.
+      // A folder, or a file that no longer exists.
       unread.push(`${file.name}: ${reason(error)}`);
     }
   }
-  // A campaign takes the place of the one before.
+  // A new campaign replaces the previous one.
   if (come.some(isCampaign)) dropped = new Map([...dropped].filter((file) => !isCampaign(file)));
   for (const [name, bytes] of come) dropped.set(name, bytes);
   try {
@@ -81,7 +81,7 @@ export async function open(files: readonly File[]): Promise<void> {
   if (also.value.length > 0) fitting.give(also.value);
 }
 
-/** Chooses a word of `--fit-also`, or lets it go. */
+/** Selects a word of `--fit-also` or removes the selection. */
 export function choose(word: string): void {
   also.value = also.value.includes(word) ? also.value.filter((other) => other !== word) : [...also.value, word];
   [further.value, noFurther.value] = [null, ""];
@@ -91,7 +91,7 @@ export function choose(word: string): void {
 const fitting = new Latest<readonly string[]>(async (words) => {
   if (!fit.value || words.length === 0) return;
   begin("fitting more parameters");
-  // Of what is chosen no more, nothing is shown.
+  // Results of a removed selection are hidden.
   const isChosen = () => also.value === words;
   try {
     const answer = await lab.json<FurtherAnswer>("calibrate further", { number: fit.value.number, also: words });
@@ -144,7 +144,7 @@ async function calibrate(): Promise<void> {
   try {
     evidence.value = await lab.json<EvidenceAnswer>("calibrate evidence", { number });
   } catch (error) {
-    // A fit can be assessed without.
+    // A fit can be assessed without it.
     if (reason(error) === STOPPED) throw error;
     fit.value = { ...fitted, warnings: [...fitted.warnings, `no estimate by likelihood: ${reason(error)}`] };
   }

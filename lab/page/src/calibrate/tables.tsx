@@ -1,4 +1,4 @@
-// The tables of a calibration: the fits with their intervals, runs and their cycles, servos, what both parameters hang on.
+// Tables of a calibration: fits with their intervals, runs and their cycles, servos, error budget of both parameters.
 
 import type { ComponentChildren } from "preact";
 import { figure } from "../explore/names.ts";
@@ -24,7 +24,7 @@ export function Table({ title, id, head, notes = [], children }: { title: string
   );
 }
 
-/** A way of fitting; null where it tells nothing, undefined while it is computed. */
+/** Result of one method of fitting; null if it gives none, undefined while it is computed. */
 interface Way {
   name: string;
   estimate: Pair | null | undefined;
@@ -32,7 +32,7 @@ interface Way {
   correlation?: number | undefined;
 }
 
-/** Both parameters, each way of fitting in a line. */
+/** Both parameters, one line per method of fitting. */
 export function Parameters({ fit, evidence, assessment }: { fit: FitAnswer; evidence: EvidenceAnswer | null; assessment: AssessmentAnswer | null }) {
   const likelihood = evidence?.likelihood;
   const wider = assessment ? assessment.systematics ?? null : undefined;
@@ -76,7 +76,7 @@ export function Parameters({ fit, evidence, assessment }: { fit: FitAnswer; evid
 
 const chanceOf = (value: number | null) => (value === null ? "–" : value < 1e-3 ? "< 0.001" : value.toFixed(3));
 
-/** How well the model explains the runs: what each says by itself, and the signs of what is left. */
+/** Goodness of fit: statistics of each run, and the signs of the residuals. */
 export function Goodness({ told: { goodness, reduced_chi2 } }: { told: AssessmentAnswer }) {
   const withError = ([value, error]: [number | null, number | null], unit: number, digits: number) =>
     value === null ? "–" : `${figure(value * unit, digits)}${error === null ? "" : ` ± ${(error * unit).toFixed(digits)}`}`;
@@ -105,7 +105,7 @@ export function Goodness({ told: { goodness, reduced_chi2 } }: { told: Assessmen
   );
 }
 
-/** How far both would move with what is taken for granted, and what would explain the runs better. */
+/** Error budget of both parameters, and alternative explanations of the runs. */
 export function Budget({ told }: { told: AssessmentAnswer }) {
   if (told.budget.length === 0) return null;
   const amount = (by: number, unit: string) => `${Number(by.toPrecision(2))}${unit ? ` ${unit}` : ""}`;
@@ -133,7 +133,7 @@ export function Budget({ told }: { told: AssessmentAnswer }) {
   );
 }
 
-/** What is known by halves, and what the runs make of it. */
+/** Nuisance parameters: prior and fitted values. */
 export function Known({ told }: { told: AssessmentAnswer }) {
   if (!told.systematics || told.systematics.parameters.length === 0) return null;
   const amount = ([value, deviation]: [number, number], unit: string) => {
@@ -141,7 +141,7 @@ export function Known({ told }: { told: AssessmentAnswer }) {
     return `${figure(value * per, digits)} ± ${(deviation * per).toFixed(digits)}${name}`;
   };
   return (
-    <Table title="What is known by halves" id="known" head={["", "known", "found", "pull"]} notes={["pull: how far the runs alone contradict what is known, in standard deviations"]}>
+    <Table title="Nuisance parameters" id="known" head={["", "known", "found", "pull"]} notes={["pull: deviation of the runs alone from the known value, in standard deviations"]}>
       {told.systematics.parameters.map(({ name, unit, known, stated, found, pull }) => (
         <tr key={name}>
           <th scope="row">{name}</th>
@@ -154,7 +154,7 @@ export function Known({ told }: { told: AssessmentAnswer }) {
   );
 }
 
-/** What each run measured, and what is noteworthy about it. */
+/** Results and notes of each run. */
 export function Runs({ fit }: { fit: FitAnswer }) {
   return (
     <Table title="Runs" id="runs" head={["run", "gait", "cycles", "X [mm]", "sd [mm]", "ΔY [mm]", "Δθ [°]", "left out"]}>
@@ -174,7 +174,7 @@ export function Runs({ fit }: { fit: FitAnswer }) {
   );
 }
 
-/** The displacement of every cycle that counts, run by run. */
+/** Displacement of every valid cycle, by run. */
 export function Cycles({ runs }: { runs: readonly Run[] }) {
   const known = runs.filter((run) => run.each.length > 0);
   if (known.length === 0) return null;
@@ -194,7 +194,7 @@ export function Cycles({ runs }: { runs: readonly Run[] }) {
   );
 }
 
-/** What the servos made of their commands, by the reflectors on the side links: the mean of the runs. */
+/** Behaviour of the servos, measured by the reflectors on the side links: mean over the runs. */
 export function Servos({ fit }: { fit: FitAnswer }) {
   if (!fit.servos) return null;
   const tell = (measured: Measured | null, unit: number, digits: number) =>

@@ -1,4 +1,4 @@
-// The connected robot in every tab: its state, and the e-stop.
+// Bar of every tab: state of the connected robot, and the e-stop.
 
 import { opened, openRoom } from "../shell/open.ts";
 import { estop, link, stale, telemetry } from "./robot.ts";
@@ -29,7 +29,7 @@ export function RobotBar() {
 
 const LINK = { opening: "opening the link", greeting: "greeting", watching: "watching: another page drives", gone: "link lost" };
 
-/** It asks nothing and waits for nothing. */
+/** Sends the e-stop at once, without a confirmation. */
 export function EStop() {
   if (link.value.state === "closed") return null;
   const latched = telemetry.value?.state === "EStopped";

@@ -1,4 +1,4 @@
-// How the robot is reached: in this page, over the browser's serial port, or through `swimmer lab`.
+// Connection to the robot: in this page, over the browser's serial port, or through `swimmer lab`.
 
 import { signal } from "@preact/signals";
 import { shown } from "../explore/document.ts";
@@ -10,7 +10,7 @@ import { serial } from "./wires.ts";
 const BAUD = 115_200;
 /** The text of a key file, for a robot that has a key. */
 const key = signal<{ name: string; text: string } | null>(null);
-/** Why the key that was chosen last is none. */
+/** Reason why the last chosen key is invalid. */
 const noKey = signal("");
 const refused = signal("");
 const socket = served();
@@ -21,7 +21,7 @@ const connectTwin = () =>
 async function connectSerial(): Promise<void> {
   refused.value = "";
   try {
-    // The browser shows the ports; the worker then has the one that was chosen.
+    // The browser shows the ports; the worker opens the chosen one.
     await serial()?.requestPort?.();
     connect({ kind: "serial", baud: BAUD }, key.value?.text ?? null);
   } catch (error) {
@@ -71,7 +71,7 @@ export function Connect() {
   );
 }
 
-/** A key is 32 hexadecimal digits in one line; lines that begin with # say whose it is. */
+/** Parses a key: 32 hexadecimal digits in one line; lines that begin with # are comments. */
 function take(name: string, text: string): void {
   const lines = text.split(/\r?\n/).map((line) => line.trim()).filter((line) => line !== "" && !line.startsWith("#"));
   const isKey = lines.length === 1 && /^[0-9a-f]{32}$/i.test(lines[0] ?? "");
@@ -79,7 +79,7 @@ function take(name: string, text: string): void {
   noKey.value = isKey ? "" : `${name} holds no key: 32 hexadecimal digits in one line are one; \`swimmer robot key make FILE\` writes one.`;
 }
 
-/** For a robot that has a key: a file of it, or its digits typed. What is in force is named, and can be removed. */
+/** Key of a robot: from a file or typed. The present key is named and can be removed. */
 function KeyField() {
   if (key.value) {
     return (

@@ -1,4 +1,4 @@
-// Controls: upload, arm, play; the forecast of the gait that is shown, before it is sent.
+// Controls: upload, arm, play; forecast of the shown gait before it is sent.
 
 import { signal } from "@preact/signals";
 import { activeGait, edit, shown } from "../explore/document.ts";
@@ -9,7 +9,7 @@ import { busy, cancelUpload, held, link, progress, request, said, stop, table, t
 
 const STANDARD_CYCLES = 3;
 const cycles = signal(STANDARD_CYCLES);
-/** A play without end, ended by the link or by a stop; only where it was chosen. */
+/** Cycles of a play without end, which ends with the link or by a stop; only on request. */
 const endless = signal(false);
 
 export function Controls() {
@@ -53,7 +53,7 @@ const WHY_NOT = {
   other: "The robot holds another gait than the one shown: upload it first.",
 };
 
-/** Names both gaits, and says what to do where they differ. */
+/** Names both gaits, and the remedy if they differ. */
 function Which() {
   const it = comparison.value;
   const text = {

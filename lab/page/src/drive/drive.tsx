@@ -1,4 +1,4 @@
-// Drive: connect, upload, arm, play, stop; telemetry as it comes.
+// Drive tab: connect, upload, arm, play, stop; live telemetry.
 
 import "./drive.css";
 import { Connect } from "./connect.tsx";

@@ -1,4 +1,4 @@
-// Where the robot is: its joints on the height map over the gait, and its predicted path from above.
+// Present state of the robot: its joints on the height map with the gait, and its predicted path from above.
 
 import { useEffect, useRef } from "preact/hooks";
 import { activeGait, shown } from "../explore/document.ts";
@@ -61,7 +61,7 @@ function Heights() {
   return <canvas ref={canvas} aria-hidden="true" />;
 }
 
-/** The predicted path, and for the robot in the page where it truly is in its tank. */
+/** Predicted path, and for the robot in the page its true position in the tank. */
 function Way() {
   const points = path.value;
   const truth = stands.value;

@@ -1,4 +1,4 @@
-// The gait that is shown and the one that the robot holds, held against each other by the checksums of their tables.
+// Comparison of the shown gait with the robot's gait, by the checksums of their tables.
 
 import { computed, effect, signal } from "@preact/signals";
 import { activeGait, shown } from "../explore/document.ts";
@@ -11,7 +11,7 @@ const question = computed(() => {
   const robot = hello.value && configuration.value ? { hello: hello.value, configuration: configuration.value } : null;
   return { swimmer: swimmer.value.toml, gait, period_s: shown.value.period, robot };
 });
-/** Number of the present question: an answer to an earlier one is not about the gait that is shown. */
+/** Number of the latest request; replies to earlier requests are not about the shown gait. */
 const number = signal(0);
 let pause: ReturnType<typeof setTimeout> | undefined;
 effect(() => {
@@ -19,21 +19,21 @@ effect(() => {
   const of = number.peek() + 1;
   number.value = of;
   clearTimeout(pause);
-  // A hand that drags is let come to rest.
+  // Waits until dragging pauses.
   if (about) pause = setTimeout(() => foretell(about, of), 150);
 });
 
-/** What the robot will make of the gait that is shown; null until that is known. */
+/** Forecast of the shown gait; null until it is known. */
 export const forecast = computed(() => (foretold.value?.of === number.value ? foretold.value : null));
 
 export type Comparison =
-  /** It is not known yet. */
+  /** `true` if it is not known yet. */
   | { is: "unknown" }
   | { is: "none" }
   | { is: "same"; crc32: number }
   | { is: "other"; crc32: number; shown: number };
 
-/** Which gait the robot holds, against the one that is shown. */
+/** Relation of the robot's gait to the shown one. */
 export const comparison = computed((): Comparison => {
   if (link.value.state !== "open") return { is: "unknown" };
   if (table.value === null) return { is: "none" };
@@ -43,7 +43,7 @@ export const comparison = computed((): Comparison => {
   return crc32 === shownCrc ? { is: "same", crc32 } : { is: "other", crc32, shown: shownCrc };
 });
 
-/** The gait that the robot holds, if this page has sent it. */
+/** Gait of the robot, if this page has sent it. */
 export const robotGait = computed(() => (table.value ? (sent.value.get(table.value.crc32) ?? null) : null));
 
 export const inHex = (crc32: number) => crc32.toString(16).padStart(8, "0");

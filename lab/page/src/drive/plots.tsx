@@ -30,7 +30,7 @@ const CHARTS: readonly Chart[] = [
   { title: "round trip [ms]", lines: [{ name: "round trip", colour: "--accent", of: ({ trip }) => (trip === null ? null : trip * 1000) }] },
 ];
 const HEIGHT = [150, 90, 90];
-/** Between two drawings, ms: ten a second is as fast as one reads. */
+/** Interval between two updates, ms: ten per second are fast enough to read. */
 const BEAT = 100;
 
 export function Plots() {

@@ -1,4 +1,4 @@
-// The robot as the page knows it: signals that follow the worker's news, and what may be asked.
+// State of the robot in the page: signals updated by the worker's messages, and the requests to the robot.
 
 import { computed, effect, signal } from "@preact/signals";
 import source from "worker:./worker.ts";
@@ -10,7 +10,7 @@ import type { Foretold, Health, Held, Hello, LinkState, News, Order, Request, St
 export const link = signal<{ state: LinkState; name: string; reason: string }>({ state: "closed", name: "", reason: "" });
 export const wheel = signal<{ yours: boolean; free: boolean } | null>(null);
 export const telemetry = signal<Telemetry | null>(null);
-/** When it came, ms of the page's clock. */
+/** Time of arrival, ms of the page's clock. */
 export const heardAt = signal(0);
 export const hello = signal<Hello | null>(null);
 export const configuration = signal<object | null>(null);
@@ -20,38 +20,38 @@ export const health = signal<Health | null>(null);
 export const stands = signal<Stands | null>(null);
 export const progress = signal<{ done: number; total: number } | null>(null);
 export const foretold = signal<{ of: number; told: Foretold | null; reason: string } | null>(null);
-/** Gaits that this page has sent, by the checksum of their tables: what the robot plays can be drawn only if it is among them. */
+/** Gaits that this page has sent, by the checksum of their tables; only these can be drawn while the robot plays. */
 export const sent = signal<ReadonlyMap<number, string | number[]>>(new Map());
-/** What was done last, or why not. */
+/** Result of the last action. */
 export const said = signal<{ text: string; failed: boolean }>({ text: "", failed: false });
-/** What is under way. */
+/** Action in progress. */
 export const busy = signal("");
 export const wireKind = signal<WireAsked["kind"] | null>(null);
 
-/** A sample of the plots. */
+/** Sample of the plots. */
 export interface Sample {
-  /** s since the robot was switched on. */
+  /** Time since power-on of the robot, s. */
   t: number;
   phi: [number, number];
   battery: number | null;
   trip: number | null;
 }
-/** About two minutes. */
+/** Number of samples in about two minutes. */
 const KEPT = 3000;
 export const history = signal<readonly Sample[]>([]);
 /** The robot's own prediction of its path in this play. */
 export const path = signal<readonly [number, number][]>([]);
 
-/** Telemetry older than this is grey: the robot sends it 25 times a second, ms. */
+/** Age above which telemetry is grey, ms; the robot sends it 25 times per second. */
 const FRESH = 500;
 const tick = signal(performance.now());
 setInterval(() => (tick.value = performance.now()), 100);
 export const stale = computed(() => telemetry.value === null || tick.value - heardAt.value > FRESH);
 
 const AT_REST = new Set(["Stopped", "EStopped"]);
-/** Since a powering request was sent, ms of the page's clock. */
+/** Time at which a powering request was sent, ms of the page's clock. */
 let powered = -Infinity;
-/** As far as this page knows pulses may be on: then the space bar is the e-stop. */
+/** `true` if pulses may be on; the space bar is then the e-stop. */
 export function mayMove(): boolean {
   const { state } = link.peek();
   if (state === "closed" || state === "opening") return false;
@@ -76,7 +76,7 @@ function hear(news: News): void {
       link.value = news;
       if (news.state !== "open") busy.value = "";
       if (news.state === "closed") wheel.value = telemetry.value = hello.value = stands.value = null;
-      // A session asks for the robot's status anew: e-stops may have come, or other settings.
+      // A new session requests the status again, since e-stops or settings may have changed.
       if (news.state !== "open") table.value = held.value = null;
       break;
     case "events":
@@ -163,7 +163,7 @@ export const downloadLog = () => order({ do: "log" });
 export const cancelUpload = () => order({ do: "cancel upload" });
 export const foretell = (question: object, of: number) => order({ do: "preflight", question, of });
 
-/** Stops never wait: not for an answer, not for a dialog, not for what is under way. */
+/** Stops never wait for a reply, a dialog or another action. */
 export const stop = () => order({ do: "stop" });
 export function estop(): void {
   powered = -Infinity;
@@ -187,7 +187,7 @@ export function upload(gait: string | number[]): void {
   order({ do: "upload", gait, of: lastUpload });
 }
 
-/** What `swimmer lab --port` put into the address: kept for this tab, and taken out of the address, which may be shared. */
+/** Token that `swimmer lab --port` put into the address: stored for this tab, and removed from the address, which may be shared. */
 const SERVED = "swimmer-link";
 export function served(): { url: string; token: string } | null {
   const told = fragment().get("link");
@@ -195,7 +195,7 @@ export function served(): { url: string; token: string } | null {
     try {
       sessionStorage.setItem(SERVED, told);
     } catch {
-      // A page that may keep nothing asks for the address again after a reload.
+      // Without storage, the page needs the address again after a reload.
     }
     setFragment("link", undefined);
     kept = told;
@@ -213,7 +213,7 @@ function remembered(): string | null {
   }
 }
 
-/** While pulses may be on the space bar is the e-stop, wherever the focus is, in every tab of the page. */
+/** While pulses may be on, the space bar is the e-stop in every tab, whatever has the focus. */
 window.addEventListener(
   "keydown",
   (event) => {
@@ -224,10 +224,10 @@ window.addEventListener(
   },
   { capture: true },
 );
-// The key that was pressed must not press a button when it is let go.
+// Releasing the key must not press a button.
 window.addEventListener("keyup", (event) => event.code === "Space" && mayMove() && event.preventDefault(), { capture: true });
 
-/** The tab's title says what the robot does, for whoever is in another one. */
+/** Shows the state of the robot in the title of the browser tab. */
 effect(() => {
   const state = telemetry.value?.state;
   document.title = state && link.value.state !== "closed" ? `${state} – swimmer lab` : "swimmer lab";

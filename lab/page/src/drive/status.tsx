@@ -1,4 +1,4 @@
-// The robot's last telemetry; grey if it is old. The state itself is in the bar of every tab.
+// Last telemetry of the robot, grey if it is old. The state is in the bar of every tab.
 
 import { figure } from "../explore/names.ts";
 import { inHex } from "./gait.ts";
@@ -16,7 +16,7 @@ export const STATES: Record<StateName, string> = {
   Settling: "Settling at neutral",
 };
 
-/** The flags that somebody must know of, by their bits in link-protocol's `Flags`. */
+/** Flags that are shown, by their bits in link-protocol's `Flags`. */
 const FLAGS: readonly (readonly [number, string])[] = [
   [1, "battery low"],
   [2, "reset loop: arming is refused"],

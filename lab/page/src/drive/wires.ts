@@ -1,32 +1,32 @@
-// The ways bytes go: a serial port of the browser's, a WebSocket of `swimmer lab`, the twin beside the session.
+// Transports of bytes: a serial port of the browser, a WebSocket of `swimmer lab`, the twin in the page.
 
 import type { Module } from "../wasm/module.ts";
 import type { Stands, WireAsked } from "./words.ts";
 
-/** Who is told what a wire hears. */
+/** Callbacks for the events of a transport. */
 export interface Ear {
-  /** It carries bytes from now on. */
+  /** The transport is open. */
   up(name: string, bytesPerSecond: number): void;
   bytes(bytes: Uint8Array): void;
-  /** It is broken; it is tried again by itself. */
+  /** The transport is broken and will be opened again automatically. */
   gone(reason: string): void;
-  /** Another page may drive instead. */
+  /** Another page is driving. */
   wheel(yours: boolean, free: boolean): void;
   stoppedByAnother(): void;
   stands(stands: Stands): void;
 }
 
 export interface Wire {
-  /** Bytes that a full wire does not take are lost, as on any link: nothing waits here without bound. */
+  /** Sends bytes. If the buffer is full they are lost, as on any link, so the queue is bounded. */
   send(bytes: Uint8Array): void;
-  /** A stop: it overtakes all bytes that wait here. */
+  /** Sends a stop, which overtakes all waiting bytes. */
   sendStop(bytes: Uint8Array): void;
-  /** In words, where the wire has somebody who listens to them. */
+  /** Sends a text message, if the other end understands them. */
   say(word: "drive" | "watch" | "stop" | "estop" | "here"): void;
   close(): void;
 }
 
-/** Time between two attempts at a wire that is broken, ms. */
+/** Time between two attempts to open a broken transport, ms. */
 const AGAIN = 500;
 const BITS_OF_A_BYTE = 10;
 
@@ -35,11 +35,11 @@ export function open(asked: WireAsked, module: Module, ear: Ear): Wire {
   return asked.kind === "serial" ? new SerialWire(asked.baud, ear) : new SocketWire(asked, ear);
 }
 
-/** The robot in the page lives in real time, in steps that its clock never takes more of at once. */
+/** Robot in the page: runs in real time, with a limited number of steps at once. */
 class TwinWire implements Wire {
   static readonly STEP = 10;
   static readonly LONGEST = 0.02;
-  /** Between two looks at where the robot is, ms. */
+  /** Interval between two readings of the robot's pose, ms. */
   static readonly LOOK = 50;
   readonly #number: number;
   readonly #timer: ReturnType<typeof setInterval>;
@@ -62,7 +62,7 @@ class TwinWire implements Wire {
 
   #step(): void {
     const now = performance.now();
-    // Where the machine stalls the robot waits, like any simulation's: its lease does not run out over bytes still unread.
+    // If the machine stalls, the simulated robot waits, so its lease does not expire over unread bytes.
     this.#robot += Math.min((now - this.#before) / 1000, TwinWire.LONGEST);
     this.#before = now;
     const answer = this.module.call("twin step", stepOf(this.#number, this.#robot, this.#waiting));
@@ -90,7 +90,7 @@ class TwinWire implements Wire {
   }
 }
 
-/** `[u32 number][f64 s][bytes]`, as the module's steps take them. */
+/** Arguments of the module's steps: `[u32 number][f64 s][bytes]`. */
 export function stepOf(number: number, now: number, pieces: readonly Uint8Array[]): Uint8Array {
   const length = pieces.reduce((sum, piece) => sum + piece.length, 12);
   const question = new Uint8Array(length);
@@ -107,7 +107,7 @@ export function stepOf(number: number, now: number, pieces: readonly Uint8Array[
 
 /** The WebSocket of `swimmer lab --port`. */
 class SocketWire implements Wire {
-  /** Bytes that may wait in the browser. */
+  /** Largest number of bytes that wait in the browser. */
   static readonly MOST_WAITING = 4096;
   #socket: WebSocket | undefined;
   #closed = false;
@@ -146,7 +146,7 @@ class SocketWire implements Wire {
     if (this.#socket?.readyState === WebSocket.OPEN && this.#socket.bufferedAmount < SocketWire.MOST_WAITING) this.#socket.send(bytes);
   }
 
-  /** The server looks for stops among the frames and lets them overtake. */
+  /** The server detects stops among the frames and lets them overtake. */
   sendStop(bytes: Uint8Array<ArrayBuffer>): void {
     if (this.#socket?.readyState === WebSocket.OPEN) this.#socket.send(bytes);
   }
@@ -167,7 +167,7 @@ type Said =
   | { told: "port"; name: string; open: boolean; why: string | null; bytes_per_second: number }
   | { told: "stopped" };
 
-/** The parts of Web Serial that are used; TypeScript's own library has none of it. */
+/** Used parts of Web Serial, which TypeScript's library lacks. */
 export interface SerialPort {
   open(options: { baudRate: number; bufferSize?: number }): Promise<void>;
   close(): Promise<void>;
@@ -180,18 +180,18 @@ export interface Serial {
   requestPort?(): Promise<SerialPort>;
 }
 
-/** The browser's serial ports, where it has any. */
+/** Serial ports of the browser; undefined if it does not support them. */
 export function serial(): Serial | undefined {
   return (navigator as { serial?: Serial }).serial;
 }
 
-/** The port that the reader has chosen in the page: the one that the browser lets this page have, found again when plugged again. */
+/** Serial port chosen by the user, for which the browser has granted permission; found again after it was unplugged. */
 class SerialWire implements Wire {
   #closed = false;
   #writer: WritableStreamDefaultWriter<Uint8Array> | undefined;
   #reader: ReadableStreamDefaultReader<Uint8Array> | undefined;
   #port: SerialPort | undefined;
-  /** What the writer takes when nothing waits. */
+  /** Free capacity of an idle writer. */
   #idle: number | null = null;
   #told = "";
 
@@ -205,7 +205,7 @@ class SerialWire implements Wire {
   async #live(): Promise<void> {
     while (!this.#closed) {
       try {
-        // Of several the one that was allowed last.
+        // The most recently permitted of several ports.
         const port = (await serial()?.getPorts())?.at(-1);
         if (!port) throw new Error("there is no serial port that this page may have; plug the robot in, or choose its port again");
         await this.#carry(port);
@@ -242,7 +242,7 @@ class SerialWire implements Wire {
 
   send(bytes: Uint8Array): void {
     if ((this.#writer?.desiredSize ?? 0) <= 0) return;
-    // What a broken port does not take is lost too; the reader's end tells of it.
+    // Bytes for a broken port are lost too; the end of the reader reports the failure.
     this.#writer?.write(bytes).catch(() => undefined);
   }
 
@@ -250,7 +250,7 @@ class SerialWire implements Wire {
     const writer = this.#writer;
     if (!writer) return;
     if (writer.desiredSize === this.#idle) return void writer.write(bytes).catch(() => undefined);
-    // Bytes that wait in the browser are discarded, and the stream with them; the port has another one.
+    // Discards the waiting bytes together with the stream; the port provides a new stream.
     this.#writer = undefined;
     void writer
       .abort()

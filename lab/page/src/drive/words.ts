@@ -1,8 +1,8 @@
-// What page and worker say to each other, and the link's own words as its JSON has them.
+// Messages between page and worker, and the JSON messages of the link.
 
 export type StateName = "Stopped" | "EStopped" | "Holding" | "Starting" | "Playing" | "Paused" | "Stopping" | "Settling";
 
-/** The robot's telemetry; see link-protocol's `Telemetry` for units. */
+/** Telemetry of the robot; units as in link-protocol's `Telemetry`. */
 export interface Telemetry {
   robot_us: number;
   state: StateName;
@@ -33,7 +33,7 @@ export interface TableInfo {
   min_period_us: number;
 }
 
-/** What a play and a clear of e-stops must name. */
+/** Values that a play and a clearing of e-stops must name. */
 export interface Held {
   settings_crc32: number;
   estops: number;
@@ -45,7 +45,7 @@ export interface Status extends Held {
 
 export type Reply = string | Record<string, unknown>;
 
-/** What the session tells; tickets are between worker and module. */
+/** Events of the session; tickets are used between worker and module. */
 export type Event =
   | { event: "telemetry"; telemetry: Telemetry; at_s: number }
   | { event: "connected"; ticket: number; restarted: boolean; hello: Hello }
@@ -55,7 +55,7 @@ export type Event =
   | { event: "progress"; ticket: number; phase: string; done: number; total: number }
   | { event: "failed"; ticket: number; reason: string };
 
-/** How bytes reach a robot. */
+/** Transport to a robot. */
 export type WireAsked =
   | { kind: "twin"; swimmer: string; seed: number }
   | { kind: "serial"; baud: number }
@@ -63,7 +63,7 @@ export type WireAsked =
 
 export type Request = string | Record<string, unknown>;
 
-/** From the page to the worker. */
+/** Messages from the page to the worker. */
 export type Order =
   | { do: "open"; wire: WireAsked; key: string | null }
   | { do: "close" }
@@ -79,7 +79,7 @@ export type Order =
   /** The page's main thread is alive. */
   | { do: "alive" };
 
-/** How the link stands. */
+/** Statistics of the link. */
 export type LinkState = "closed" | "opening" | "greeting" | "open" | "watching" | "gone";
 
 export interface Health {
@@ -90,7 +90,7 @@ export interface Health {
   forgotten: number;
 }
 
-/** How the robot in the page truly stands. */
+/** True pose of the robot in the page. */
 export interface Stands {
   now_s: number;
   pose: [number, number, number];
@@ -114,7 +114,7 @@ export interface Foretold {
   configured_as: boolean | null;
 }
 
-/** From the worker to the page. */
+/** Messages from the worker to the page. */
 export type News =
   | { told: "link"; state: LinkState; name: string; reason: string }
   | { told: "events"; events: Event[] }
@@ -130,6 +130,6 @@ export type News =
   | { told: "wheel"; yours: boolean; free: boolean }
   | { told: "stopped by another" }
   | { told: "foretold"; of: number; foretold: Foretold | null; reason: string }
-  /** The worker looks whether the main thread is alive. */
+  /** The worker checks that the main thread is alive. */
   | { told: "alive?" }
   | { told: "log"; bytes: ArrayBuffer };

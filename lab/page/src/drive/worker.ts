@@ -1,19 +1,19 @@
-// The worker that has the robot: the session lives here, because a hidden page's own timers tick once a second and the robot's
+// Worker of the robot's session. The session runs here because the timers of a hidden page tick once per second, while the robot's
 // lease is half a second.
 
 import { Module } from "../wasm/module.ts";
 import { type Ear, open, stepOf, type Wire } from "./wires.ts";
 import type { Event, Foretold, Health, News, Order, Reply, Request, Status } from "./words.ts";
 
-/** The session is looked at at least so often, ms. */
+/** Longest interval between two steps of the session, ms. */
 const BEAT = 20;
-/** Between two looks at how the link does, ms. */
+/** Interval between two readings of the link's statistics, ms. */
 const LOOK = 500;
-/** Between two signs of life to the server, ms. */
+/** Interval between two heartbeats to the server, ms. */
 const SIGN = 250;
-/** Between two looks at which gait the robot holds, in looks at the link: another program may have sent one. */
+/** Interval between two checks of the robot's gait, in readings of the link: another program may have sent one. */
 const STATUS_EVERY = 4;
-/** A main thread that has not answered for so long hangs: the page then gives no signs of life either, ms. */
+/** Time without a reply after which the main thread counts as hung and heartbeats stop, ms. */
 const HANGS = 400;
 
 let module: Module;
@@ -23,9 +23,9 @@ let session: number | undefined;
 let ear: number | undefined;
 let key: string | null = null;
 let timer: ReturnType<typeof setTimeout> | undefined;
-/** What each ticket is for. */
+/** Purpose of each ticket. */
 const asked = new Map<number, string>();
-/** The page's number of the upload under way. */
+/** Number of the upload in progress, chosen by the page. */
 let uploading = 0;
 let looks = 0;
 let alive = performance.now();
@@ -121,7 +121,7 @@ function ask(name: string, question: object, what: string, stops = false): void 
 
 const request = (request: Request, what: string, stops = false) => ask("session request", { request }, what, stops);
 
-/** Bytes in, bytes out, what happened, and when to look again. */
+/** Steps the session: passes bytes in and out, handles events, schedules the next step. */
 function step(received: Uint8Array, stops = false): void {
   if (session === undefined) return;
   const answer = module.call("session step", stepOf(session, now(), [received]));
@@ -154,11 +154,11 @@ function hear(event: Event): void {
   if (event.event === "failed") {
     if (what === GREETING) {
       tell({ told: "link", state: "gone", name: wireName, reason: event.reason });
-      // A robot that is switched on later is met then.
+      // Finds a robot that is switched on later.
       timer = setTimeout(greet, LOOK);
     } else {
       if (what !== STATUS) tell({ told: "done", what, reason: event.reason });
-      // Another e-stop may have come, or other settings: what the next request names is read anew.
+      // E-stops or settings may have changed, so the values for the next request are read again.
       if (what !== STATUS) request("Status", STATUS);
     }
     return;
@@ -198,7 +198,7 @@ function overhear(bytes: Uint8Array): void {
 
 setInterval(() => {
   if (performance.now() - alive < HANGS) wire?.say("here");
-  // A message is answered in a hidden page too, where timers tick seldom.
+  // Messages are handled in a hidden page too, where timers tick rarely.
   tell({ told: "alive?" });
 }, SIGN);
 
@@ -224,7 +224,7 @@ function perform(order: Order): void {
       return;
     case "stop":
     case "estop":
-      // Who watches has somebody else say it.
+      // A spectator has no session; the server stops the robot on its behalf.
       if (session === undefined) wire?.say(order.do);
       else request(order.do === "stop" ? "Stop" : "EStop", order.do === "stop" ? "stop" : "e-stop", true);
       return;

@@ -1,4 +1,4 @@
-// What the module answers, under the keys of `swimmer … --json`.
+// Outputs of the module, with the keys of `swimmer … --json`.
 
 export interface SwimmerAnswer {
   name: string;
@@ -15,7 +15,7 @@ export interface SwimmerAnswer {
   doubts: string[];
 }
 
-/** What follows a hand. */
+/** Numbers that are updated during a drag. */
 export interface Net {
   displacement_over_length: number;
   displacement_m: number;

@@ -1,4 +1,4 @@
-// The diverging scale of heights: blue below, orange above, paper between. It holds for every kind of colour vision.
+// Diverging colour scale of heights: blue below zero, orange above, paper colour between; suitable for all kinds of colour vision.
 
 const LIGHT = { below: [27, 92, 161], none: [250, 250, 249], above: [186, 84, 8] } as const;
 const DARK = { below: [92, 167, 236], none: [24, 30, 35], above: [238, 148, 72] } as const;
@@ -12,7 +12,7 @@ export function diverging(value: number, dark: boolean): [number, number, number
   return [mix(0), mix(1), mix(2)];
 }
 
-/** Height that takes the full colour: all but the steepest fiftieth lies below it. */
+/** Height of the full colour: the 98th percentile of the absolute heights. */
 export function fullScale(heights: Float64Array): number {
   const sorted = Float64Array.from(heights, Math.abs).sort();
   return sorted[Math.floor(sorted.length * 0.98)] || 1;

@@ -1,4 +1,4 @@
-// What Explore shows, as one value: it is what undo steps through, and what a link carries.
+// State of the Explore tab as one value, for undo and for links.
 
 import { signal } from "@preact/signals";
 
@@ -7,13 +7,13 @@ export type Point = readonly [number, number];
 export const OPTIMA = ["displacement", "efficiency-small", "efficiency-large", "turning", "sideways", "speed"] as const;
 export type Optimum = (typeof OPTIMA)[number];
 
-/** A closed curve of shapes: dragged by control points, found by the optimiser, or read. */
+/** Closed curve of shapes: dragged by control points, computed by the optimiser, or read from a file. */
 export type Gait =
   | { kind: "drawn"; points: readonly Point[]; symmetric: boolean }
   | { kind: "optimum"; what: Optimum }
   | { kind: "text"; name: string; text: string };
 
-/** What the sliders say beyond the swimmer's file; units in the names, as the module's call `swimmer` takes them. */
+/** Values of the sliders that replace those of the swimmer file; with units in the names, as in the module's call `swimmer`. */
 export interface With {
   chi?: number;
   sphere_radius_m?: number;
@@ -30,17 +30,17 @@ export interface Document {
   /** Preset, or the text of a swimmer file. */
   swimmer: string;
   with: With;
-  /** Bound on the joints for the optimiser and the certificate \[rad\]; none for no bound. */
+  /** Bound on the joints for the optimiser and the certificate \[rad\]; undefined for no bound. */
   maxAngle: number | null;
   noOverlap: boolean;
   row: Row;
-  /** The map reaches to ±this \[rad\]. */
+  /** Half width of the map \[rad\]. */
   halfWidth: number;
-  /** Seconds of a cycle. */
+  /** Period of a cycle \[s\]. */
   period: number;
   /** Length and width \[m\]. */
   tank: readonly [number, number];
-  /** What the certificate asks for. */
+  /** Objective of the certificate. */
   objective: "displacement" | "efficiency";
   /** Two side by side; the second may be missing. */
   gaits: readonly [Gait, Gait | null];
@@ -70,13 +70,13 @@ export const shown = signal<Document>(FIRST);
 const past = signal<readonly Document[]>([]);
 const future = signal<readonly Document[]>([]);
 let gesture: string | undefined;
-/** Steps that can be undone. */
+/** Number of steps that can be undone. */
 const DEPTH = 200;
 
 export const canUndo = () => past.value.length > 0;
 export const canRedo = () => future.value.length > 0;
 
-/** Changes what is shown. Changes of one gesture (a drag, a slider's travel) are one step. */
+/** Changes the state. Changes of one gesture (dragging a point or a slider) are one step. */
 export function edit(change: Partial<Document>, partOf?: string): void {
   if (!partOf || partOf !== gesture) past.value = [...past.value.slice(1 - DEPTH), shown.value];
   gesture = partOf;
@@ -84,7 +84,7 @@ export function edit(change: Partial<Document>, partOf?: string): void {
   shown.value = { ...shown.value, ...change };
 }
 
-/** The next change is a step of its own. */
+/** Ends the gesture: the next change is a new step. */
 export function endGesture(): void {
   gesture = undefined;
 }
@@ -111,7 +111,7 @@ export function activeGait(document: Document): Gait {
   return document.gaits[document.active] ?? document.gaits[0];
 }
 
-/** Puts a gait where the active one is. */
+/** Replaces the active gait. */
 export function editGait(gait: Gait, partOf?: string): void {
   const [first, second] = shown.value.gaits;
   edit({ gaits: shown.value.active === 0 ? [gait, second] : [first, gait] }, partOf);

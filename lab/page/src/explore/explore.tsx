@@ -1,4 +1,4 @@
-// Explore: the height map, gaits laid over it, and what they swim.
+// Explore tab: height map, gaits on the map, and the motion of the swimmer.
 
 import "./explore.css";
 import { useDrop } from "../files/drop.ts";

@@ -1,4 +1,4 @@
-// The gaits: the drawn one and its class, the optimiser's to lay over or to take, and a second one beside.
+// Gaits: the dragged gait and its class, optimal gaits to show or to edit, and a second gait for comparison.
 
 import { activeGait, CIRCLE, edit, editGait, type Gait, OPTIMA, type Optimum, shown } from "./document.ts";
 import { FEWEST, withPoints } from "./handles.tsx";
@@ -6,7 +6,7 @@ import { curveOf, forgetStopped, isCurrent, optima, searching, stopSearch } from
 import { angle, figure, NAMES } from "./names.ts";
 import { symmetrised } from "./spline.ts";
 
-/** Control points of a drawn gait, at most. */
+/** Largest number of control points of a dragged gait. */
 const MOST = 32;
 
 export function Gaits() {
@@ -47,7 +47,7 @@ function Drawn({ gait }: { gait: Gait }) {
     );
   }
   const { points, symmetric } = gait;
-  // Both symmetries make four of every point.
+  // Each point has four images under the symmetries.
   const step = symmetric ? 4 : 1;
   const fewest = symmetric ? 8 : FEWEST;
   return (
@@ -67,7 +67,7 @@ function Drawn({ gait }: { gait: Gait }) {
   );
 }
 
-/** Control points on a curve, at even lengths along it. */
+/** Control points at equal distances along a curve. */
 function draggable(gait: Gait): Gait {
   const curve = curveOf(gait);
   const lengths = [0];
@@ -114,7 +114,7 @@ function OptimumRow({ what }: { what: Optimum }) {
   );
 }
 
-/** A search that lasts says so, and can be stopped. */
+/** Seconds of a long search, with a button that stops it. */
 function Searching({ seconds }: { seconds: number }) {
   if (seconds === 0) return <>…</>;
   return (

@@ -1,4 +1,4 @@
-// The control points of the drawn gait: dragged by pointer or arrow keys, added and removed where the curve is free.
+// Control points of the dragged gait: moved by pointer or arrow keys; points can be added and removed.
 
 import { useRef } from "preact/hooks";
 import { editGait, endGesture, type Gait, type Point, shown } from "./document.ts";
@@ -7,9 +7,9 @@ import { moved, resampled } from "./spline.ts";
 /** Steps of the arrow keys [rad]. */
 const STEP = 0.01;
 const LARGE_STEP = 0.1;
-/** Control points of a drawn gait, at least. */
+/** Least number of control points of a dragged gait. */
 export const FEWEST = 4;
-/** No joint of a drawn gait turns further [rad]. */
+/** Largest joint angle of a dragged gait [rad]. */
 const FARTHEST = 6;
 
 const ARROWS: Record<string, Point> = {
@@ -70,7 +70,7 @@ export function Handles({ gait, second }: { gait: Gait; second: boolean }) {
   );
 }
 
-/** Where in the (φ₁, φ₂) plane the pointer is. */
+/** Position of the pointer in the (φ₁, φ₂) plane. */
 function place(event: PointerEvent): Point {
   const svg = (event.currentTarget as SVGElement).ownerSVGElement;
   const box = svg?.getBoundingClientRect();
@@ -79,7 +79,7 @@ function place(event: PointerEvent): Point {
   return [((event.clientX - box.left) / box.width) * 2 * d - d, d - ((event.clientY - box.top) / box.height) * 2 * d];
 }
 
-/** More or fewer control points on the same curve; the paper's symmetries need a multiple of four. */
+/** Changes the number of control points on the same curve; the paper's symmetries need a multiple of four. */
 export function withPoints(gait: Gait, count: number): void {
   if (gait.kind === "drawn") editGait({ ...gait, points: resampled(gait.points, count) });
 }

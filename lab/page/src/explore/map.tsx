@@ -1,4 +1,4 @@
-// The height map: heights on a canvas, and above it as SVG the zero curves, the gaits and the handles of the drawn one.
+// Height map: heights on a canvas, with zero curves, gaits and control points as SVG on top.
 
 import { computed } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";

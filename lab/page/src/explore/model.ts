@@ -1,4 +1,4 @@
-// What is computed of the document: each effect asks a worker, and only the newest question is answered.
+// Computation of the results for the document: each effect sends a request to a worker; only the latest request is completed.
 
 import { batch, computed, effect, signal } from "@preact/signals";
 import { Lab, Latest } from "../wasm/lab.ts";
@@ -6,13 +6,13 @@ import type { Evidence, FoundAnswer, Mapped, Net, Swum, SwimmerAnswer, TankAnswe
 import { type Document, type Gait, type Optimum, activeGait, shown } from "./document.ts";
 import { pairs, sampled } from "./spline.ts";
 
-/** What follows the hand, what a moment may pass for, and what is searched for. */
+/** Workers: for results during a drag, for slower results, and for searches. */
 export const quick = new Lab();
 const slow = new Lab();
 const search = new Lab();
 
 export const swimmer = signal<SwimmerAnswer | null>(null);
-/** When the first numbers were there, ms since the page was opened. */
+/** Time of the first results, ms since the page was opened. */
 export const firstNumbers = signal<number | null>(null);
 export const trouble = signal("");
 export const swum = signal<readonly [Swum | null, Swum | null]>([null, null]);
@@ -26,7 +26,7 @@ export const optima = signal<ReadonlyMap<Optimum, FoundOptimum>>(new Map());
 
 export const INTERVALS = 240;
 
-/** A gait as the module takes it; null where it is still being looked for. */
+/** Gait in the format of the module; null while it is being searched for. */
 export function asked(gait: Gait | null): string | number[] | null {
   if (!gait) return null;
   if (gait.kind === "drawn") return sampled(gait.points);
@@ -72,16 +72,15 @@ const latestSwimmer = new Latest(async (question: object) => {
 const swimmerAsked = computed(() => JSON.stringify({ swimmer: shown.value.swimmer, with: shown.value.with }));
 effect(() => latestSwimmer.give(JSON.parse(swimmerAsked.value)));
 
-/** Whether the first numbers are there: what is only looked at waits for them, so that the page opens at once. */
+/** `true` once the first results exist; less urgent computations wait for them, so that the page opens quickly. */
 const begun = signal(false);
 const afterFirst = <T>(question: T | null): T | null =>
   begun.value || shown.value.gaits[0].kind === "optimum" ? question : null;
 
-/** Whether a search has lasted so long that what it will change is computed of what is there. */
+/** `true` if a search takes so long that dependent results are computed from the present gait meanwhile. */
 const overdue = signal(false);
 const PATIENCE_MS = 200;
-/** In place of a question about an optimum that will be another one in a moment: what is shown stays, and no worker takes the
- * search's time. */
+/** Replaces a request about an optimum that is about to change: the shown results stay, and no worker delays the search. */
 const HELD = "";
 const isHeld = (gait: Gait | null) => gait?.kind === "optimum" && !isCurrent(gait.what) && !overdue.value;
 
@@ -95,7 +94,7 @@ for (const slot of [0, 1] as const) {
     const gait = asked(shown.value.gaits[slot]);
     return swimmer.value && gait && JSON.stringify({ swimmer: swimmer.value.toml, gait, period: shown.value.period });
   });
-  // What follows a hand comes first, and nothing else of a gait that the hand has left behind.
+  // Results during a drag come first, and requests for outdated curves are dropped.
   const latest = new Latest(async (text: string) => {
     const overtaken = () => question.peek() !== text;
     try {
@@ -146,7 +145,7 @@ const certifyAsked = computed(() => {
   const { objective } = shown.value;
   const own = typeof gait === "string" && gait.includes("\n");
   const question = { swimmer: swimmer.value.toml, gait };
-  // A file tells what it is optimal for, and within what.
+  // A gait file names its objective and its bounds.
   return JSON.stringify(own && /^# objective: (?!unspecified)/m.test(gait) ? question : { ...question, objective, bounds: bounds(shown.value) });
 });
 const latestEvidence = new Latest(async (text: string) => {
@@ -159,7 +158,7 @@ const latestEvidence = new Latest(async (text: string) => {
 effect(() => {
   if (certifyAsked.value) latestEvidence.give(certifyAsked.value);
 });
-/** Whether the certificate shown is of an older curve. */
+/** `true` if the shown certificate belongs to an older curve. */
 export const evidenceIsStale = computed(() => evidence.value?.of !== certifyAsked.value);
 
 const mapAsked = computed(() =>
@@ -167,7 +166,7 @@ const mapAsked = computed(() =>
     ? JSON.stringify({ swimmer: swimmer.value.toml, row: shown.value.row, max_angle: shown.value.halfWidth })
     : null,
 );
-/** Nodes of the grid along each axis: at once, then fine. */
+/** Grid nodes along each axis: coarse at first, then fine. */
 const COARSE = 41;
 const FINE = 161;
 const mapLab = new Lab();
@@ -177,7 +176,7 @@ const latestMap = new Latest(async (text: string) => {
     for (const count of [COARSE, FINE]) {
       const bytes = await mapLab.bytes("height-grid", { ...question, count });
       map.value = { heights: new Float64Array(bytes), count, row: question.row, halfWidth: question.max_angle };
-      // Overtaken: the next one is coarse first again.
+      // Replaced by a newer request, which starts coarse again.
       if (mapAsked.peek() !== text) return;
     }
     curves.value = await mapLab.json<Mapped>("height-map", question);
@@ -190,19 +189,19 @@ effect(() => {
   if (mapAsked.value) latestMap.give(mapAsked.value);
 });
 
-/** The optima that something shows. */
+/** Optima that are in use. */
 const wanted = computed(() => {
   const { overlaid, gaits } = shown.value;
   const taken = gaits.flatMap((gait) => (gait?.kind === "optimum" ? [gait.what] : []));
   return [...new Set([...overlaid, ...taken])];
 });
 const optimumAsked = (what: Optimum) => JSON.stringify({ swimmer: swimmer.value?.toml, what, bounds: bounds(shown.value) });
-/** What is being searched for, and for how many seconds. */
+/** Present search and its duration in seconds. */
 export const searching = signal<{ what: Optimum; seconds: number } | null>(null);
 const STOPPED = "stopped";
-/** Ends the search that is under way. */
+/** Stops the present search. */
 export const stopSearch = () => search.stop(STOPPED);
-/** Lets a search that was stopped be begun anew. */
+/** Allows a stopped search to start again. */
 export function forgetStopped(what: Optimum): void {
   const found = optima.peek().get(what);
   if (!found || !("reason" in found) || found.reason !== STOPPED) return;
@@ -232,10 +231,10 @@ const latestOptima = new Latest(async (_: number) => {
   }
 });
 let warm = false;
-/** After what is shown, these bounds: a search along a bound has code of its own. */
+/** Additional bounds for the warm-up, since searches along a bound run other code. */
 const WARM_BOUNDS = [2, 2.4, 1.8, 2.1, 2.5];
-/** Browsers compile with care only what has run for a while: so the first searches are not those that a reader waits for. What they
- * find of the swimmer that is shown is kept; whoever asks meanwhile waits for one of them at most. */
+/** Warm-up: browsers optimise code only after it has run for a while, so the first searches run in the background. Their results for
+* the shown swimmer are kept. A request by the user waits for at most one of them. */
 async function warmUp(): Promise<void> {
   if (warm) return;
   warm = true;
@@ -251,5 +250,5 @@ let turn = 0;
 effect(() => {
   if (swimmer.value && wanted.value.map(optimumAsked).length) latestOptima.give(++turn);
 });
-/** Whether an optimum is of what is shown now. */
+/** Returns `true` if an optimum belongs to the present swimmer and bounds. */
 export const isCurrent = (what: Optimum) => optima.value.get(what)?.of === optimumAsked(what);

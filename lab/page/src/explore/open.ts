@@ -3,7 +3,7 @@
 import { edit, editGait } from "./document.ts";
 import { quick, trouble } from "./model.ts";
 
-/** Opens files one after the other; what is neither swimmer nor gait is refused with the reader's own words. */
+/** Opens files one after the other; other files than swimmers and gaits are refused with the parser's message. */
 export async function openFiles(files: readonly File[]): Promise<void> {
   for (const file of files) {
     const text = await file.text();

@@ -1,4 +1,4 @@
-// The numbers of one gait, or of two side by side, with their units; and the certificate.
+// Results of one gait, or of two side by side, with units, and the certificate.
 
 import type { ComponentChildren } from "preact";
 import type { Swum, TankAnswer } from "./answers.ts";

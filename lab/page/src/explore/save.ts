@@ -1,4 +1,4 @@
-// Everything shown, as files: gait, swimmer, map, motion.
+// Files of the present view: gait, swimmer, map, motion.
 
 import { applyPalette, GIFEncoder, quantize } from "gifenc";
 import { download } from "../files/download.ts";
@@ -6,7 +6,7 @@ import { activeGait, shown } from "./document.ts";
 import { asked, INTERVALS, motions, quick, swimmer } from "./model.ts";
 import { CYCLES, picture } from "./swimming.tsx";
 
-/** The gait file, as `swimmer … -o` writes it; `swimmer simulate` swims what is shown. */
+/** Gait file, as `swimmer … -o` writes it; `swimmer simulate` gives the same motion. */
 export async function saveGait(): Promise<void> {
   const gait = asked(activeGait(shown.value));
   if (!swimmer.value || !gait) throw new Error("saving the gait: it is still being looked for");
@@ -18,7 +18,7 @@ export function saveSwimmer(): void {
   if (swimmer.value) download("swimmer.toml", swimmer.value.toml, "application/toml");
 }
 
-/** The path as `swimmer simulate --trajectory` has it, of one cycle. */
+/** Path of one cycle in the format of `swimmer simulate --trajectory`. */
 export function saveTable(): void {
   const motion = motions.value[shown.value.active];
   if (!motion) throw new Error("saving the motion: it is not there yet");
@@ -28,7 +28,7 @@ export function saveTable(): void {
   download("motion.csv", `${lines.join("\n")}\n`, "text/csv");
 }
 
-/** The style that matters in a picture of the map, written onto a copy of its elements. */
+/** Copies the relevant styles of the map onto a copy of its elements. */
 function standalone(): { text: string; side: number } {
   const svg = document.getElementById("map");
   const heights = document.getElementById("heights");
@@ -74,7 +74,7 @@ export async function savePng(): Promise<void> {
   download("height-map.png", blob, "image/png");
 }
 
-/** A canvas for a film of all cycles, and the seconds that it lasts. */
+/** Canvas for an animation of all cycles, and its duration in seconds. */
 function film(width: number, height: number): { context: CanvasRenderingContext2D; seconds: number } {
   const canvas = document.createElement("canvas");
   [canvas.width, canvas.height] = [width, height];
@@ -83,10 +83,10 @@ function film(width: number, height: number): { context: CanvasRenderingContext2
   return { context, seconds: 2 * CYCLES };
 }
 
-/** Pictures of a GIF for each second of it, of the hundredths that the format counts in. */
+/** Frames per second of a GIF; the format counts in hundredths of a second. */
 const PICTURES = 12.5;
 
-/** All cycles in motion, as a picture that moves wherever pictures are shown. */
+/** Animation of all cycles as a GIF. */
 export async function saveGif(): Promise<void> {
   const [width, height] = [640, 320];
   const { context, seconds } = film(width, height);
@@ -95,7 +95,7 @@ export async function saveGif(): Promise<void> {
     picture(context, (k / count) * CYCLES, width, height);
     return context.getImageData(0, 0, width, height).data;
   };
-  // The colours are those of the page, and the same in every picture.
+  // All frames have the colours of the page.
   const palette = quantize(drawn(Math.round(count / 2)), 64);
   const gif = GIFEncoder();
   for (let k = 0; k < count; k++) {
@@ -106,7 +106,7 @@ export async function saveGif(): Promise<void> {
   download("motion.gif", new Uint8Array(gif.bytes()), "image/gif");
 }
 
-/** All cycles in motion, as the browser records it; it takes as long as it lasts. */
+/** Animation of all cycles, recorded by the browser in real time. */
 export async function saveVideo(): Promise<void> {
   const type = ["video/webm;codecs=vp9", "video/webm"].find((each) => MediaRecorder.isTypeSupported(each));
   if (!type) throw new Error("saving the motion: this browser records no WebM");

@@ -1,4 +1,4 @@
-// The document in the URL's fragment: compressed JSON, so that a link opens what its sender saw.
+// Document in the fragment of the URL as compressed JSON, so that a link opens the sender's view.
 
 import { effect } from "@preact/signals";
 import { fragment, setFragment } from "../shell/fragment.ts";
@@ -8,7 +8,7 @@ const KEY = "explore";
 const PLAIN = "open";
 
 async function through(bytes: Uint8Array<ArrayBuffer>, stream: CompressionStream | DecompressionStream): Promise<Uint8Array<ArrayBuffer>> {
-  // What is wrong with the bytes is told by the reading side; the writing side only repeats it.
+  // The reading side reports invalid bytes; the error of the writing side is the same.
   const writer = stream.writable.getWriter();
   const repeated = () => undefined;
   writer.write(bytes).catch(repeated);
@@ -31,7 +31,7 @@ export async function unpacked(text: string): Promise<Document> {
   return sound(JSON.parse(new TextDecoder().decode(plain)));
 }
 
-/** What a link says, where it makes sense; the rest is as in a fresh page. A link is a stranger's text. */
+/** Valid values of a link; other values have their defaults. A link is untrusted input. */
 export function sound(told: unknown): Document {
   if (typeof told !== "object" || told === null) return FIRST;
   const from = told as Record<string, unknown>;
@@ -70,7 +70,7 @@ function gaitOf(told: unknown): Gait | null {
   return { kind: "drawn", points, symmetric: from["symmetric"] === true };
 }
 
-/** What a report links to: the document as plain JSON, as far as it differs from a fresh page. */
+/** Link format of reports: the values of the document that differ from the defaults, as plain JSON. */
 function openPlain(): void {
   const told = fragment().get(PLAIN);
   if (!told) return;
@@ -78,11 +78,11 @@ function openPlain(): void {
   try {
     shown.value = sound(JSON.parse(told));
   } catch {
-    // A link that was cut off opens a fresh page.
+    // A truncated link opens the default view.
   }
 }
 
-/** Opens what the fragment holds, then keeps it up to date, a moment after the hand rests. */
+/** Opens the document of the fragment, then updates the fragment shortly after each change. */
 export async function followFragment(): Promise<void> {
   const told = fragment().get(KEY);
   if (told) shown.value = await unpacked(told).catch(() => FIRST);
@@ -97,7 +97,7 @@ export async function followFragment(): Promise<void> {
   });
 }
 
-/** Puts a link to what is shown on the clipboard. */
+/** Copies a link to the present view to the clipboard. */
 export async function copyLink(): Promise<string> {
   setFragment(KEY, await packed(shown.value));
   try {

@@ -1,4 +1,4 @@
-// The swimmer, its bounds and its surroundings; whatever depends on them follows.
+// Sliders of the swimmer, its bounds and its environment.
 
 import { edit, endGesture, type Document, type Row, ROWS, shown, type With } from "./document.ts";
 import { swimmer } from "./model.ts";

@@ -2,10 +2,10 @@
 
 import type { Point } from "./document.ts";
 
-/** Samples of a drawn gait; as many as keep a drag well within a frame. */
+/** Number of samples of a dragged gait, small enough for one frame. */
 export const SAMPLES = 192;
 
-/** The spline in even steps of its parameter, φ₁ and φ₂ in turn, without the last sample, which is the first. */
+/** Spline in equal steps of its parameter, φ₁ and φ₂ in turn, without the last sample, which equals the first. */
 export function sampled(points: readonly Point[], count = SAMPLES): number[] {
   const bends = [0, 1].map((axis) => curvatures(points.map((point) => point[axis as 0 | 1])));
   const n = points.length;
@@ -25,20 +25,20 @@ export function sampled(points: readonly Point[], count = SAMPLES): number[] {
   return samples;
 }
 
-/** Second derivatives at the knots: the cyclic system (1, 4, 1) m = 6 Δ²y, by Gauss–Seidel, which it converges under fast. */
+/** Second derivatives at the knots: the cyclic system (1, 4, 1) m = 6 Δ²y, solved by Gauss–Seidel iteration. */
 function curvatures(y: readonly number[]): number[] {
   const n = y.length;
   const at = (values: readonly number[], i: number) => values[(i + n) % n] ?? 0;
   const right = y.map((_, i) => 6 * (at(y, i + 1) - 2 * at(y, i) + at(y, i - 1)));
   const m = new Array<number>(n).fill(0);
-  // Each sweep shrinks the error by more than four: forty leave nothing of a double.
+  // Each sweep reduces the error by more than a factor of four, so forty reach double precision.
   for (let sweep = 0; sweep < 40; sweep++) {
     for (let i = 0; i < n; i++) m[i] = ((right[i] ?? 0) - at(m, i - 1) - at(m, i + 1)) / 4;
   }
   return m;
 }
 
-/** Moves a control point; with the paper's symmetries its images in both diagonals follow, and points on a diagonal stay there. */
+/** Moves a control point. With the paper's symmetries its mirror images move too, and points on a diagonal stay on it. */
 export function moved(points: readonly Point[], index: number, to: Point, symmetric: boolean): Point[] {
   const n = points.length;
   const after = [...points];
@@ -58,7 +58,7 @@ export function moved(points: readonly Point[], index: number, to: Point, symmet
   return after;
 }
 
-/** The nearest curve with both symmetries, through as many points, from the diagonal on. */
+/** Nearest symmetric curve with the same number of points, beginning on the diagonal. */
 export function symmetrised(points: readonly Point[]): Point[] {
   const n = 4 * Math.max(2, Math.round(points.length / 4));
   const evenly = points.length === n ? points : resampled(points, n);
@@ -73,7 +73,7 @@ export function symmetrised(points: readonly Point[]): Point[] {
   });
 }
 
-/** Control points along a curve, in even steps of its parameter. */
+/** Control points in equal steps of the curve's parameter. */
 export function resampled(points: readonly Point[], count: number): Point[] {
   return pairs(sampled(points, count));
 }

@@ -1,8 +1,8 @@
-// The swimmer on a canvas: its path, its trail, its body, and the fluid's force along it.
+// Drawing of the swimmer on a canvas: path, trail, body, and force of the fluid along it.
 
 import { INTERVALS } from "./model.ts";
 
-/** Numbers of an instant, as the module's call `motion` tells them. */
+/** Numbers per instant in the output of the module's call `motion`. */
 const STRIDE = 26;
 
 export interface Ink {
@@ -13,7 +13,7 @@ export interface Ink {
   force: string;
 }
 
-/** The colours of the page as it is now. */
+/** Present colours of the page. */
 export function ink(): Ink {
   const style = getComputedStyle(document.documentElement);
   const of = (name: string) => style.getPropertyValue(name).trim();
@@ -26,7 +26,7 @@ interface Frame {
   scale: number;
 }
 
-/** What holds all cycles of all motions, with room round it. */
+/** Bounding box of all cycles of all motions, with a margin. */
 function frame(motions: readonly Float64Array[], cycles: number, width: number, height: number): Frame {
   let [x0, x1, y0, y1] = [Infinity, -Infinity, Infinity, -Infinity];
   for (const motion of motions) {
@@ -45,7 +45,7 @@ function frame(motions: readonly Float64Array[], cycles: number, width: number, 
   return { left: (x0 + x1) / 2 - width / 2 / scale, top: (y0 + y1) / 2 + height / 2 / scale, scale };
 }
 
-/** Where a point of the first cycle is in a later one: each cycle begins at the pose that the one before ended in. */
+/** Maps a point of the first cycle to a later one; each cycle begins at the final pose of the previous one. */
 function start(motion: Float64Array, cycle: number): (x: number, y: number) => [number, number] {
   const end = INTERVALS * STRIDE;
   const [dx, dy, turn] = [motion[end + 3] ?? 0, motion[end + 4] ?? 0, motion[end + 5] ?? 0];
@@ -178,7 +178,7 @@ function arrow(context: CanvasRenderingContext2D, [x, y]: [number, number], [tx,
   context.stroke();
 }
 
-/** On thin paper of its own: what reaches there passes under it. */
+/** Draws the scale bar on a translucent background. */
 function scaleBar(context: CanvasRenderingContext2D, scale: number, height: number, colours: Ink): void {
   const power = 10 ** Math.floor(Math.log10(90 / scale));
   const long = ([5, 2, 1].find((digit) => digit * power * scale <= 110) ?? 1) * power;

@@ -1,4 +1,4 @@
-// The swimmer in motion: play and pause, real or fast time, a place in the cycle, forces on and off.
+// Animation of the swimmer: play and pause, real or fast time, position in the cycle, forces on and off.
 
 import { effect, signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
@@ -8,7 +8,7 @@ import { motions, swimmer } from "./model.ts";
 import { figure } from "./names.ts";
 import { drawSwim, ink } from "./swim.ts";
 
-/** Cycles that are shown before it begins again. */
+/** Number of cycles before the animation repeats. */
 export const CYCLES = 3;
 const SPEEDS = [1, 4, 16] as const;
 
@@ -19,7 +19,7 @@ export const time = signal(0);
 const speed = signal<(typeof SPEEDS)[number]>(16);
 const forces = signal(true);
 
-/** What a picture of the motion needs. */
+/** Data of an animation. */
 export function picture(context: CanvasRenderingContext2D, at: number, width: number, height: number): void {
   const sphere = swimmer.peek()?.sphere_radius_m ?? 0;
   drawSwim(context, motions.peek(), at, CYCLES, { width, height, sphere, forces: forces.peek() }, ink());

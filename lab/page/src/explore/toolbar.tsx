@@ -1,4 +1,4 @@
-// Undo, redo, open, save, share: by button and by key.
+// Toolbar: undo, redo, open, save, share, with buttons and keys.
 
 import { signal } from "@preact/signals";
 import { useEffect } from "preact/hooks";

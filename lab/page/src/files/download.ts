@@ -1,4 +1,4 @@
-// Hands a file to the reader.
+// Download of a file.
 
 export function download(name: string, content: BlobPart, type: string): void {
   const place = URL.createObjectURL(new Blob([content], { type }));

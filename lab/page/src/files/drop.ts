@@ -1,8 +1,8 @@
-// Files dropped anywhere on a room, or chosen; a room says what it opens.
+// Files dropped anywhere on a tab, or chosen; the tab decides which files it opens.
 
 import { useLayoutEffect } from "preact/hooks";
 
-/** Calls `open` for files dropped on the page while `place` is to be seen, from the moment that it is. */
+/** Calls `open` for files dropped on the page while `place` is visible. */
 export function useDrop(place: string, open: (files: File[]) => void): void {
   useLayoutEffect(() => {
     const here = () => document.getElementById(place)?.offsetParent !== null;

@@ -1,4 +1,4 @@
-// A button that lets the reader choose files, for whom dropping is hard.
+// Button to choose files, as an alternative to dropping them.
 
 import { useRef } from "preact/hooks";
 

@@ -1,9 +1,9 @@
-// The export of `swimmer sweep map --export FILE.json`, read with a reason for whatever is wrong in it.
+// Reader of the export of `swimmer sweep map --export FILE.json`, with a message for each error.
 
 export interface Quantity {
   name: string;
   unit: string;
-  /** Rows along the second axis, columns along the first; null where nothing was found. */
+  /** Rows along the second axis, columns along the first; null for designs without a gait. */
   values: (number | null)[][];
 }
 
@@ -26,7 +26,7 @@ export interface Axis {
 
 const FORMAT = "swimmer-sweep-map 1";
 
-/** Reads an export; throws the reason in one sentence. */
+/** Reads an export; throws an error message of one sentence. */
 export function readMap(text: string): SweepMap {
   let told: unknown;
   try {

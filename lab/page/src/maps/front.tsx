@@ -1,4 +1,4 @@
-// The designs that no other one beats in speed and in efficiency at once.
+// Pareto front: designs that no other one beats in both speed and efficiency.
 
 import { useEffect, useRef } from "preact/hooks";
 import uPlot from "uplot";

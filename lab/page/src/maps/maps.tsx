@@ -1,4 +1,4 @@
-// Maps: what `swimmer sweep map --export` wrote, as a picture that can be asked.
+// Maps tab: interactive map of an export of `swimmer sweep map --export`.
 
 import "./maps.css";
 import { signal } from "@preact/signals";
@@ -73,7 +73,7 @@ function Opened({ map }: { map: SweepMap }) {
   );
 }
 
-/** A name as people say it; its unit stands beside it. */
+/** Display name of a quantity, without its unit. */
 const spoken = (name: string) => name.replace(/(_per_s|_rad|_s|_m)$/, "").replaceAll("_", " ");
 
 interface CellsProps {
@@ -136,7 +136,7 @@ function Cells({ map, values, low, high }: CellsProps) {
 
 const told = (value: number | undefined) => (value === undefined ? "" : `${Number(value.toPrecision(4))}`);
 
-/** Where between the cells a value lies; a cell's middle is its value. */
+/** Position of a value in units of cells; the value of a cell is at its centre. */
 export function place(values: readonly number[], value: number): number {
   const rising = (values.at(-1) ?? 0) >= (values[0] ?? 0);
   const after = values.findIndex((each) => (rising ? each >= value : each <= value));

@@ -1,10 +1,10 @@
-// A sequential ramp that grows evenly darker, for every kind of colour vision.
+// Sequential colour scale with uniformly decreasing lightness, suitable for all kinds of colour vision.
 
 import { dark } from "../shell/theme.tsx";
 
 const STOPS = [[253, 246, 227], [244, 190, 120], [222, 120, 62], [160, 58, 90], [74, 24, 110]] as const;
 
-/** The colour of a share in 0 … 1. */
+/** Colour of a fraction in 0 … 1. */
 export function rampColour(share: number): string {
   const clamped = Math.max(0, Math.min(1, dark.value ? 1 - share : share)) * (STOPS.length - 1);
   const k = Math.min(STOPS.length - 2, Math.floor(clamped));
@@ -13,7 +13,7 @@ export function rampColour(share: number): string {
   return `rgb(${mixed.join(" ")})`;
 }
 
-/** Least and largest of what is there. */
+/** Least and largest of the existing values. */
 export function range(values: readonly (readonly (number | null)[])[]): [number, number] {
   let [low, high] = [Infinity, -Infinity];
   for (const row of values) {

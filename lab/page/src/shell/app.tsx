@@ -1,4 +1,4 @@
-// The frame of the page: a rail of rooms, the room itself, and what the page was built from.
+// Frame of the page: list of tabs, the open tab, and the version of the page.
 
 import { computed } from "@preact/signals";
 import { useEffect } from "preact/hooks";
@@ -64,7 +64,7 @@ export function App() {
   );
 }
 
-/** Arrow keys go from tab to tab, as the pattern for tabs asks. */
+/** Moves between tabs with the arrow keys, as the ARIA pattern for tabs requires. */
 function moveAlong(event: KeyboardEvent): void {
   const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
   if (!step) return;

@@ -1,11 +1,11 @@
-// The URL's fragment holds what a link shares: pairs as in a query, nothing that a server would see.
+// Fragment of the URL with the data of a link: pairs as in a query, which are not sent to a server.
 
-/** Its pairs, decoded. */
+/** Decoded pairs. */
 export function fragment(): URLSearchParams {
   return new URLSearchParams(location.hash.slice(1));
 }
 
-/** Sets a pair, or removes it, without a step in the browser's history. */
+/** Sets or removes a pair without an entry in the browser's history. */
 export function setFragment(key: string, value: string | undefined): void {
   const pairs = fragment();
   if (value === undefined) pairs.delete(key);

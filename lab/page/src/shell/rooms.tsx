@@ -1,4 +1,4 @@
-// The rooms of the page: one line each. A room is mounted when it is first opened and stays.
+// Tabs of the page, one line each. A tab is mounted when it is first opened and stays mounted.
 
 import type { ComponentType } from "preact";
 import { Calibrate } from "../calibrate/calibrate.tsx";
@@ -7,12 +7,12 @@ import { Explore } from "../explore/explore.tsx";
 import { Maps } from "../maps/maps.tsx";
 
 export interface Room {
-  /** In the URL's fragment. */
+  /** Name in the fragment of the URL. */
   id: string;
   name: string;
-  /** What it is for, in one sentence. */
+  /** Purpose in one sentence. */
   about: string;
-  /** The key that opens it, with Alt. */
+  /** Key that opens the tab together with Alt. */
   key: string;
   Panel: ComponentType;
 }

@@ -1,4 +1,4 @@
-// Light, dark, or as the system says.
+// Colour theme: light, dark, or that of the system.
 
 import { effect, signal } from "@preact/signals";
 
@@ -20,7 +20,7 @@ const theme = signal<Theme>(remembered());
 const systemDark = signal(system.matches);
 system.addEventListener("change", (event) => (systemDark.value = event.matches));
 
-/** Whether the page is dark now; whatever paints on a canvas reads it. */
+/** `true` if the page is dark; used by drawings on a canvas. */
 export const dark = signal(false);
 
 effect(() => {
@@ -34,7 +34,7 @@ export function ThemeToggle() {
     try {
       localStorage.setItem(KEY, theme.value);
     } catch {
-      // It holds for this visit.
+      // The choice is valid for this visit only.
     }
   };
   return (

@@ -1,18 +1,18 @@
-// The modules, unpacked from the page itself and compiled once, however many workers want them.
+// WebAssembly modules, unpacked from the page and compiled once for all workers.
 
-/** What a module can do: each kind of worker has its own. */
+/** Kind of module; each kind of worker has its own. */
 export type ModuleName = "explore" | "drive" | "calibrate";
 
 const compiled = new Map<ModuleName, Promise<WebAssembly.Module>>();
 
-/** A module, compiled when it is first wanted. */
+/** Returns a module, compiled at its first use. */
 function moduleOf(name: ModuleName): Promise<WebAssembly.Module> {
   const known = compiled.get(name) ?? compile(name);
   compiled.set(name, known);
   return known;
 }
 
-/** Compiles while it unpacks. */
+/** Compiles a module while it is unpacked. */
 function compile(name: ModuleName): Promise<WebAssembly.Module> {
   const element = document.getElementById(`module-${name}`);
   const packed = bytesOf(element?.textContent ?? "");
@@ -21,12 +21,12 @@ function compile(name: ModuleName): Promise<WebAssembly.Module> {
   return WebAssembly.compileStreaming(new Response(stream, { headers: { "content-type": "application/wasm" } }));
 }
 
-/** The letters of windows-1252 that are not numbered as their bytes are, from 128 on. */
+/** Characters of windows-1252, from 128 on, whose code points differ from their bytes. */
 const NAMED = "€\x81‚ƒ„…†‡ˆ‰Š‹Œ\x8dŽ\x8f\x90‘’“”•–—˜™š›œ\x9džŸ";
-/** What follows this letter is one more than the byte, which HTML would have read as something else. */
+/** Escape character: the next character is one more than the byte, which HTML would interpret. */
 const MARK = 16;
 
-/** A byte for each letter, as `build.mjs` wrote them. */
+/** Decodes the bytes that `build.mjs` encoded as characters. */
 function bytesOf(text: string): Uint8Array<ArrayBuffer> {
   const bytes = new Uint8Array(text.length);
   let at = 0;
@@ -38,7 +38,7 @@ function bytesOf(text: string): Uint8Array<ArrayBuffer> {
   return bytes.subarray(0, at);
 }
 
-/** Starts a worker of its bundled script, with a module as its first message. */
+/** Starts a worker from its bundled script and sends it a module as the first message. */
 export async function startWorker(source: string, name: ModuleName): Promise<Worker> {
   const place = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
   const worker = new Worker(place);

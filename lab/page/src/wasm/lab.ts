@@ -1,14 +1,14 @@
-// The page's side of the numerics: questions to a worker, answers as promises.
+// Calls of the module in a worker, with promises for the results.
 
 import { signal, untracked } from "@preact/signals";
 import source from "worker:./worker.ts";
 import { type ModuleName, startWorker } from "./embedded.ts";
 import type { Told } from "./worker.ts";
 
-/** Questions that wait for an answer, of all workers. */
+/** Number of pending calls of all workers. */
 export const waiting = signal(0);
 
-/** What the latest calls took in their workers, ms by name; `cargo xtask bench` prints them. */
+/** Times of the latest calls in their workers, ms by name; `cargo xtask bench` prints them. */
 export const times = new Map<string, number[]>();
 const KEPT = 100;
 
@@ -20,7 +20,7 @@ interface Waiting {
   answered(told: Told): void;
 }
 
-/** A worker with a module of its own. Long searches have their own, so that no drag waits for them. */
+/** Worker with its own module. Long searches have their own worker, so that dragging does not wait for them. */
 export class Lab {
   #started: Promise<Worker> | undefined;
   readonly #waiting = new Map<number, Waiting>();
@@ -28,7 +28,7 @@ export class Lab {
 
   constructor(readonly module: ModuleName = "explore") {}
 
-  /** The worker, started when it is first asked: what nobody opens costs nothing. */
+  /** The worker, started at the first call. */
   #worker(): Promise<Worker> {
     this.#started ??= startWorker(source, this.module).then((worker) => {
       worker.onmessage = ({ data }: MessageEvent<Told>) => {
@@ -40,7 +40,7 @@ export class Lab {
     return this.#started;
   }
 
-  /** Asks; the reason of a refusal is the error's message. */
+  /** Performs a call; a failure throws an error with its reason. */
   ask(name: string, question: unknown): Promise<Told> {
     const id = ++this.#last;
     waiting.value++;
@@ -59,7 +59,7 @@ export class Lab {
     return answer.finally(() => waiting.value--);
   }
 
-  /** Ends what is being computed, and the worker with it: each question is refused with the reason. The next one has a new worker. */
+  /** Terminates the worker; all pending calls fail with the reason. The next call starts a new worker. */
   stop(reason: string): void {
     const ended = this.#started;
     this.#started = undefined;
@@ -81,7 +81,7 @@ export class Lab {
   }
 }
 
-/** Runs the newest of what it is given and forgets what was overtaken: a hand is faster than a certificate. */
+/** Runs only the latest of several requests and drops older ones, since dragging is faster than a certificate. */
 export class Latest<Q> {
   #running = false;
   #next: Q | undefined;
@@ -90,7 +90,7 @@ export class Latest<Q> {
 
   give(question: Q): void {
     this.#next = question;
-    // What performing looks at is nothing that who gives, an effect, should be run again for.
+    // Signals that the request reads must not trigger the calling effect again.
     if (!this.#running) void untracked(() => this.#run());
   }
 

@@ -1,4 +1,4 @@
-// The door to the Rust module, as `lab/wasm/src/abi.rs` describes it.
+// Interface to the Rust module, described in `lab/wasm/src/abi.rs`.
 
 interface Exports {
   memory: WebAssembly.Memory;
@@ -8,13 +8,13 @@ interface Exports {
   lab_output(): number;
 }
 
-/** What a call answers: a JSON document, or bytes that are the caller's to keep. */
+/** Output of a call: a JSON document, or bytes owned by the caller. */
 export type Answer = { json: unknown } | { bytes: Uint8Array<ArrayBuffer> };
 
 const BYTES = 1;
 const REASON = 2;
 
-/** The module, instantiated: one per worker, because it keeps state. */
+/** Instance of the module: one per worker, because it has state. */
 export class Module {
   readonly #exports: Exports;
   readonly #encoder = new TextEncoder();
@@ -29,8 +29,8 @@ export class Module {
     return new Module(exports as unknown as Exports);
   }
 
-  /** Performs a call by name; `question` is bytes or a JSON text as they are, or anything that JSON holds. Throws its reason in one
-   * sentence. */
+  /** Performs a call by name; `question` is bytes, a JSON text, or a value to be encoded as JSON. Throws an error message of one
+  * sentence. */
   call(name: string, question: unknown): Answer {
     const called = this.#encoder.encode(name);
     const asked = question instanceof Uint8Array ? question : this.#encoder.encode(typeof question === "string" ? question : JSON.stringify(question));

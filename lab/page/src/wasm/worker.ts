@@ -1,4 +1,4 @@
-// The worker behind `lab.ts`: one module, one call after the other.
+// Worker of `lab.ts`: one module, which performs one call after the other.
 
 import { Module } from "./module.ts";
 
