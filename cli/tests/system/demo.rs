@@ -136,7 +136,7 @@ fn wrong_gaits_are_named(demo: &Path) {
     );
 }
 
-/// Whether it can be used, and what the intervals are where what is known by halves may move.
+/// Verdict, and intervals with systematic errors.
 fn is_assessed(answer: &serde_json::Value) {
     assert!(
         answer["verdict"].is_string() && answer["reasons"].is_array(),

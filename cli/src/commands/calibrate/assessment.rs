@@ -47,7 +47,7 @@ impl AssessmentAnswer {
         Some(with_intervals(of.sphere_radius, of.chi, intervals))
     }
 
-    /// Its tables: what is known by halves, the budget, explanations, the runs' numbers.
+    /// Tables: nuisance parameters, error budget, explanations, statistics of the runs.
     pub(crate) fn shown(&self) -> Vec<Shown> {
         let known = self.systematics.as_ref().map(known);
         let tables = [self.budget(), self.explained(), self.of_runs()];
@@ -102,11 +102,11 @@ impl AssessmentAnswer {
             ]);
         }
         Shown {
-            title: "What would explain the runs, side by side",
+            title: "Explanations of the runs, side by side",
             table,
             notes: vec![
-                "each alone, free of what is known, by X, ΔY, Δθ, Y and net turn, over r_s and χ alone; within 2 of each other the runs do \
-                 not tell which"
+                "each fitted alone with r_s and χ, without its prior, by X, ΔY, Δθ, Y and net turn; gains relative to r_s and χ alone; the runs \
+                 cannot distinguish explanations within 2 of each other"
                     .to_owned(),
             ],
         }
@@ -228,7 +228,7 @@ fn change(unit: &str, by: f64) -> String {
 }
 
 fn known(systematics: &SystematicsPart) -> Shown {
-    let mut table = Table::new(["known by halves", "known", "±", "found", "±", "pull"]);
+    let mut table = Table::new(["nuisance parameter", "known", "±", "found", "±", "pull"]);
     for nuisance in &systematics.parameters {
         let of = |value: f64| readable(nuisance.unit, value);
         let ([known, width], [found, deviation]) = (nuisance.known, nuisance.found);
@@ -246,10 +246,10 @@ fn known(systematics: &SystematicsPart) -> Shown {
         ]);
     }
     Shown {
-        title: "What is known by halves, and what the runs make of it",
+        title: "Nuisance parameters: known and fitted values",
         table,
         notes: vec![
-            "pull: how far the runs alone contradict what is known, in standard deviations"
+            "pull: deviation of the runs alone from the known value, in standard deviations"
                 .to_owned(),
         ],
     }
