@@ -58,7 +58,7 @@ impl CrashNote {
 
     fn of(words: fmt::Arguments<'_>) -> Self {
         let mut text = Cut(String::new());
-        // Fails only if a `Display` does; the text so far is kept.
+        // Fails only if a `Display` does; the text up to there is kept.
         let _ = text.write_fmt(words);
         let mut note = Self {
             len: text.0.len() as u32,

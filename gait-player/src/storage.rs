@@ -58,7 +58,7 @@ pub trait Storage {
     /// The memory cannot be written.
     fn save_settings(&mut self, bytes: &[u8]) -> Result<(), Self::Error>;
 
-    /// Reads the record of short starts. Returns false if there is none.
+    /// Reads the record of short starts. Returns false if the record is missing.
     ///
     /// # Errors
     /// The memory cannot be read.

@@ -61,15 +61,15 @@ pub struct HelloReply {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct HelloReplyStart {
-    /// As [`HelloReply::host_nonce`].
+    /// Same as [`HelloReply::host_nonce`].
     pub host_nonce: u32,
-    /// As [`HelloReply::protocol_min`].
+    /// Same as [`HelloReply::protocol_min`].
     pub protocol_min: u8,
-    /// As [`HelloReply::protocol_current`].
+    /// Same as [`HelloReply::protocol_current`].
     pub protocol_current: u8,
-    /// As [`HelloReply::schema_key`].
+    /// Same as [`HelloReply::schema_key`].
     pub schema_key: [u8; 8],
-    /// As [`HelloReply::firmware`].
+    /// Same as [`HelloReply::firmware`].
     pub firmware: FirmwareVersion,
 }
 

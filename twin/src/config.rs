@@ -140,8 +140,8 @@ impl TwinConfig {
 /// use swimmer_files::{ServoFile, SwimmerFile};
 ///
 /// let robot = SwimmerFile::preset("robot").unwrap().swimmer;
-/// let told = twin::configuration(&robot, &ServoFile::default());
-/// assert!((f64::from(told.chi) - 3.598).abs() < 1e-6);
+/// let configuration = twin::configuration(&robot, &ServoFile::default());
+/// assert!((f64::from(configuration.chi) - 3.598).abs() < 1e-6);
 /// ```
 pub fn configuration(swimmer: &Swimmer<f64>, servo: &ServoFile) -> Configuration {
     Configuration {
@@ -172,9 +172,9 @@ pub fn configuration(swimmer: &Swimmer<f64>, servo: &ServoFile) -> Configuration
 /// use swimmer_files::{ServoFile, SwimmerFile};
 ///
 /// let [robot, slender] = ["robot", "robot-slender"].map(|name| SwimmerFile::preset(name).unwrap().swimmer);
-/// let told = twin::configuration(&robot, &ServoFile::default());
-/// assert!(twin::is_configured_as(&told, &robot));
-/// assert!(!twin::is_configured_as(&told, &slender));
+/// let configuration = twin::configuration(&robot, &ServoFile::default());
+/// assert!(twin::is_configured_as(&configuration, &robot));
+/// assert!(!twin::is_configured_as(&configuration, &slender));
 /// ```
 pub fn is_configured_as(present: &Configuration, swimmer: &Swimmer<f64>) -> bool {
     let told = configuration(swimmer, &ServoFile::default());

@@ -238,7 +238,7 @@ struct Attempt {
     count: Count,
     /// First tick at which some fitting candidates were not tried.
     cut_short: Option<u64>,
-    /// As [`Replayed::other_settings`].
+    /// Same as [`Replayed::other_settings`].
     other_settings: Option<u32>,
 }
 

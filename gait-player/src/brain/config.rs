@@ -43,7 +43,7 @@ pub struct Boot {
     pub session_seed: u16,
     /// Last [`Output::kept`], from a register that survives a reset but not a power cut; any other value after power-on.
     pub kept: u32,
-    /// Message of the last crash; empty if there was none.
+    /// Message of the last crash; empty without a crash.
     pub crash_message: String<96>,
     /// Last [`Output::starts`], from RAM that survives resets. `None` if the RAM holds no valid record, as after power-on;
     /// [`crate::Brain::load`] then reads the storage.

@@ -92,7 +92,7 @@ impl Session {
         }
     }
 
-    /// Number of the open session; 0 if there is none.
+    /// Number of the open session; 0 without a session.
     pub(crate) fn number(&self) -> u16 {
         self.open().map_or(0, |open| open.number)
     }

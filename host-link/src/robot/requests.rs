@@ -273,7 +273,7 @@ impl<P: Port> Robot<P> {
         self.order(Request::ClearResets, "clearing the latch of resets")
     }
 
-    /// Message of the crash before the last start; empty if there was none.
+    /// Message of the crash before the last start; empty without a crash.
     ///
     /// # Errors
     /// Errors of the link.

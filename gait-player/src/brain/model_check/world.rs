@@ -212,7 +212,7 @@ impl World {
         })
     }
 
-    /// Number of effects so far that require presence.
+    /// Count of past effects that require presence.
     fn guarded(&self) -> u8 {
         let brain = &self.brain;
         let far = brain.settings.configuration.middle_m > 1.5 * brain.built.middle_m;

@@ -14,7 +14,7 @@ pub(crate) enum Maker {
     Version2,
     /// Requires quotes, and refuses a bare PIN with 1D.
     Version3,
-    /// As `Version3`, but does not report its PIN.
+    /// Like `Version3`, but does not report its PIN.
     Forgetful,
 }
 
