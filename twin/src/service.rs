@@ -38,7 +38,7 @@ const LONGEST_STEP: Duration = Duration::from_millis(20);
 pub fn serve<R: VirtualRobot + ?Sized>(
     robot: &mut R,
     ports: &mut [&mut dyn Port],
-    mut go_on: impl FnMut(&R) -> bool,
+    mut go_on: impl FnMut(&mut R) -> bool,
 ) -> io::Result<()> {
     let Some(first) = ports.first() else {
         return Ok(());

@@ -9,7 +9,7 @@ use host_link::port::Device;
 use link_protocol::{MAX_ENCODED, StateName};
 use swimmer_model::{InvalidSwimmer, Pose};
 
-use crate::camera::TrackError;
+use crate::camera::{Frame, TrackError};
 use crate::config::TwinConfig;
 use crate::virtual_robot::VirtualRobot;
 use crate::world::{CycleStart, Recording, World};
@@ -117,6 +117,16 @@ impl Twin {
     /// [`TrackError`]; written rows remain.
     pub fn finish_recording(&mut self) -> Result<Option<Recording>, TrackError> {
         self.world.finish_recording()
+    }
+
+    /// Keeps the cameras' frames for [`take_frames`](Self::take_frames), as [`World::watch`].
+    pub fn watch(&mut self) {
+        self.world.watch();
+    }
+
+    /// Frames that were taken while watched, as [`World::take_frames`].
+    pub fn take_frames(&mut self) -> impl Iterator<Item = (Duration, Frame)> {
+        self.world.take_frames()
     }
 
     /// Advances to `to` on the twin's clock, from event to event: ticks every 20 ms, frames every 10 ms during a recording, and

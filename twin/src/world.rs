@@ -1,6 +1,7 @@
 //! World outside the robot's board: servos, tank and cameras, from event to event. Twin and emulated board both use it; their
 //! inputs are the pulses and the start of each cycle.
 
+use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -8,12 +9,14 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use swimmer_model::{InvalidSwimmer, Pose};
 
-use crate::camera::{Camera, CameraConfig, MotiveFile, TrackError};
+use crate::camera::{Camera, CameraConfig, Frame, MotiveFile, TrackError};
 use crate::config::TwinConfig;
 use crate::servos::Servos;
 use crate::tank::Tank;
 
 const FRAME_US: u64 = 1_000_000 / Camera::RATE_HZ as u64;
+/// Frames that wait to be taken: ten seconds.
+const MOST_FRAMES: usize = 10 * Camera::RATE_HZ as usize;
 
 /// Start of a cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,12 +40,19 @@ pub struct Recording {
     pub cycle_starts: Vec<CycleStart>,
 }
 
+/// Cameras that are on.
 #[derive(Debug)]
 struct Cameras {
     camera: Camera,
+    next_frame_us: u64,
+    recorder: Option<Recorder>,
+}
+
+/// A recording under way.
+#[derive(Debug)]
+struct Recorder {
     file: MotiveFile,
     started_us: u64,
-    next_frame_us: u64,
     cycle_starts: Vec<CycleStart>,
     failed: Option<TrackError>,
 }
@@ -70,6 +80,8 @@ pub struct World {
     seed: u64,
     recordings: u64,
     cameras: Option<Cameras>,
+    /// Frames that wait to be taken; `None` while nobody watches.
+    watched: Option<VecDeque<(Duration, Frame)>>,
     cycle_starts: Vec<CycleStart>,
 }
 
@@ -92,6 +104,7 @@ impl World {
             seed: config.seed,
             recordings: 0,
             cameras: None,
+            watched: None,
             cycle_starts: Vec::new(),
         })
     }
@@ -128,8 +141,8 @@ impl World {
             pose: self.tank.pose(),
         };
         self.cycle_starts.push(start);
-        if let Some(cameras) = &mut self.cameras {
-            cameras.cycle_starts.push(start);
+        if let Some(recorder) = self.recorder_mut() {
+            recorder.cycle_starts.push(start);
         }
     }
 
@@ -150,18 +163,66 @@ impl World {
         self.recordings += 1;
         self.cameras = Some(Cameras {
             camera: Camera::new(self.camera.clone(), self.reach, seed, number),
-            file,
-            started_us,
             next_frame_us: started_us,
-            cycle_starts: Vec::new(),
-            failed: None,
+            recorder: Some(Recorder {
+                file,
+                started_us,
+                cycle_starts: Vec::new(),
+                failed: None,
+            }),
         });
         Ok(())
     }
 
+    /// From the next frame on, keeps frames for [`take_frames`](Self::take_frames). A recording under way, or one that is started
+    /// later, holds the same frames.
+    ///
+    /// ```
+    /// use std::time::Duration;
+    /// use swimmer_files::SwimmerFile;
+    /// use twin::{TwinConfig, World};
+    ///
+    /// let mut world = World::new(&TwinConfig::new(&SwimmerFile::preset("robot").unwrap(), 1))?;
+    /// world.watch();
+    /// world.advance(Duration::from_millis(45));
+    /// let stamps: Vec<u128> = world.take_frames().map(|(stamp, _)| stamp.as_millis()).collect();
+    /// assert_eq!(stamps, [0, 10, 20, 30, 40]);
+    /// # Ok::<(), swimmer_model::InvalidSwimmer>(())
+    /// ```
+    pub fn watch(&mut self) {
+        self.watched.get_or_insert_default();
+        if self.cameras.is_none() {
+            self.cameras = Some(self.unrecorded_cameras());
+        }
+    }
+
+    fn unrecorded_cameras(&mut self) -> Cameras {
+        let number = self.recordings;
+        self.recordings += 1;
+        Cameras {
+            camera: Camera::new(self.camera.clone(), self.reach, self.seed, number),
+            next_frame_us: self.now_us.next_multiple_of(FRAME_US),
+            recorder: None,
+        }
+    }
+
+    /// Frames that were taken while watched, in order, each with its time on the world's clock. Of frames that nobody takes for ten
+    /// seconds the oldest are dropped.
+    pub fn take_frames(&mut self) -> impl Iterator<Item = (Duration, Frame)> {
+        self.watched
+            .as_mut()
+            .map(std::mem::take)
+            .into_iter()
+            .flatten()
+    }
+
+    fn recorder_mut(&mut self) -> Option<&mut Recorder> {
+        self.cameras.as_mut()?.recorder.as_mut()
+    }
+
     /// Error that ended the present recording early, if any.
     pub fn recording_failed(&self) -> Option<&TrackError> {
-        self.cameras.as_ref()?.failed.as_ref()
+        self.cameras.as_ref()?.recorder.as_ref()?.failed.as_ref()
     }
 
     /// Finishes the recording and its file. Returns `None` without a recording.
@@ -169,19 +230,26 @@ impl World {
     /// # Errors
     /// [`TrackError`]; written rows remain.
     pub fn finish_recording(&mut self) -> Result<Option<Recording>, TrackError> {
-        let Some(cameras) = self.cameras.take() else {
+        let recorder = self
+            .cameras
+            .as_mut()
+            .and_then(|cameras| cameras.recorder.take());
+        if self.watched.is_none() {
+            self.cameras = None;
+        }
+        let Some(recorder) = recorder else {
             return Ok(None);
         };
-        if let Some(error) = cameras.failed {
+        if let Some(error) = recorder.failed {
             return Err(error);
         }
-        let path = cameras.file.path().to_path_buf();
-        let frames = cameras.file.finish()?;
+        let path = recorder.file.path().to_path_buf();
+        let frames = recorder.file.finish()?;
         Ok(Some(Recording {
             path,
             frames,
-            started: Duration::from_micros(cameras.started_us),
-            cycle_starts: cameras.cycle_starts,
+            started: Duration::from_micros(recorder.started_us),
+            cycle_starts: recorder.cycle_starts,
         }))
     }
 
@@ -214,12 +282,20 @@ impl World {
 
     fn expose(&mut self) {
         let pose = self.tank.pose();
-        if let Some(cameras) = &mut self.cameras {
-            let frame = cameras.camera.expose(&pose);
-            if cameras.failed.is_none() {
-                cameras.failed = cameras.file.push(&frame).err();
+        let stamp = self.now();
+        let Some(cameras) = &mut self.cameras else {
+            return;
+        };
+        let frame = cameras.camera.expose(&pose);
+        cameras.next_frame_us += FRAME_US;
+        if let Some(recorder) = cameras.recorder.as_mut().filter(|r| r.failed.is_none()) {
+            recorder.failed = recorder.file.push(&frame).err();
+        }
+        if let Some(watched) = &mut self.watched {
+            if watched.len() >= MOST_FRAMES {
+                watched.pop_front();
             }
-            cameras.next_frame_us += FRAME_US;
+            watched.push_back((stamp, frame));
         }
     }
 }
