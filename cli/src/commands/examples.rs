@@ -3,7 +3,7 @@
 use clap::Command;
 
 /// The words of a command, and what is typed after `swimmer`.
-pub(super) const EXAMPLES: [(&str, &str); 53] = [
+pub(super) const EXAMPLES: [(&str, &str); 54] = [
     ("demo", "demo --swimmer robot -o demo"),
     (
         "simulate",
@@ -112,6 +112,7 @@ pub(super) const EXAMPLES: [(&str, &str); 53] = [
         "twin --pty /tmp/robot --faults drop=5% --track run.csv",
     ),
     ("calibrate", "calibrate campaign.toml -o fit"),
+    ("track", "track natnet:192.168.1.10 -o run.csv"),
     ("tracks", "tracks run.csv"),
     ("optimize", "optimize displacement --swimmer purcell"),
     ("robot", "robot stop --port /tmp/robot"),

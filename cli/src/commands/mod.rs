@@ -15,6 +15,7 @@ pub(crate) mod shell;
 pub(crate) mod simulate;
 pub(crate) mod sweep;
 pub(crate) mod swimmers;
+pub(crate) mod track;
 pub(crate) mod tracks;
 pub(crate) mod twin;
 
@@ -69,6 +70,7 @@ pub(crate) enum Command {
     Twin(twin::Twin),
     Lab(lab::Lab),
     Calibrate(calibrate::Calibrate),
+    Track(track::Track),
     Tracks(tracks::Tracks),
     Swimmers(swimmers::Swimmers),
     Gaits(swimmers::Gaits),
@@ -122,6 +124,7 @@ pub(crate) fn run(command: Command, output: Output) -> Outcome {
         Command::Robot(robot) => robot.run(output),
         Command::Twin(twin) => twin.run(output),
         Command::Lab(lab) => lab.run(output),
+        Command::Track(track) => track.run(output),
         Command::Tracks(tracks) => tracks.run(output),
         Command::Swimmers(swimmers) => swimmers.run(output),
         Command::Gaits(gaits) => {

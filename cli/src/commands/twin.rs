@@ -4,15 +4,18 @@ mod joints;
 mod odd;
 
 use std::fmt;
-use std::net::{SocketAddr, ToSocketAddrs as _};
+use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, ToSocketAddrs as _};
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use gait_player::Transport;
 use host_link::Port;
 use host_link::port::TcpPort;
 use host_link::testing::{FaultPlan, Faults, FaultyPort};
+use pose_source::natnet::{COMMAND_PORT, NatNetSocket, Scene, Server};
+use pose_source::{TWIN_BODY, TWIN_REFLECTORS, twin_frame};
 use serde::Serialize;
-use twin::{TrackError, TwinConfig, VirtualRobot as _, serve};
+use twin::{TrackError, TwinConfig, VirtualRobot as _, World, serve};
 
 use self::joints::Joints;
 use crate::arguments::{dead_band, load_swimmer};
@@ -27,6 +30,7 @@ use crate::virtual_robot::{Carrier, EmulatedBoard};
 /// The swimmer file is the truth that only the tank knows. Servos are those of the file, or have a rate limit of
 /// 3.5 rad/s and a dead band of 0.017 rad.
 #[derive(Debug, clap::Args)]
+#[allow(clippy::doc_markdown)] // the help is for people: NatNet, not `NatNet`
 #[command(group = clap::ArgGroup::new("door").args(["pty", "tcp"]).required(true).multiple(true))]
 pub(crate) struct Twin {
     /// Make this symbolic link to a pseudo-terminal that any program can open as the robot's port
@@ -49,6 +53,12 @@ pub(crate) struct Twin {
     /// Write what the virtual cameras see as a Motive file
     #[arg(long, value_name = "FILE.csv")]
     track: Option<PathBuf>,
+    /// Stream what the virtual cameras see by NatNet, as Motive does, from this IPv4 address, as 127.0.0.1 or 127.0.0.1:1510
+    #[arg(long, value_name = "ADDR", value_parser = natnet_address)]
+    natnet: Option<SocketAddrV4>,
+    /// Stream to Motive's multicast group instead of to each client
+    #[arg(long, requires = "natnet")]
+    multicast: bool,
     /// What a servo truly is and the robot does not know, as front:sign=-,centre=1512 (µs) or back:slope=0.0287 (rad a µs): for
     /// trying `swimmer robot setup`
     #[arg(long = "servo", value_name = "JOINT:KEY=VALUE,…", value_parser = odd::servo)]
@@ -140,6 +150,10 @@ impl Twin {
         if let Some(track) = &self.track {
             robot.world_mut().start_recording(track)?;
         }
+        let mut cameras = self.cameras(output)?;
+        if cameras.is_some() {
+            robot.world_mut().watch();
+        }
         let mut borrowed: Vec<&mut dyn Port> = ports
             .iter_mut()
             .map(|port| port.as_mut() as &mut dyn Port)
@@ -151,6 +165,9 @@ impl Twin {
                 && let Some(line) = joints.look(robot.world())
             {
                 output.line(&line);
+            }
+            if let Some(cameras) = &mut cameras {
+                cameras.stream(robot.world_mut());
             }
             if let Some(error) = robot.world().recording_failed().filter(|_| !told) {
                 told = true;
@@ -173,6 +190,27 @@ impl Twin {
         Ok(())
     }
 
+    /// The stream of the virtual cameras, if there is to be one.
+    fn cameras(&self, output: Output) -> Outcome<Option<CameraStream>> {
+        let Some(address) = self.natnet else {
+            return Ok(None);
+        };
+        let scene = Scene {
+            body: TWIN_BODY.to_owned(),
+            markers: TWIN_REFLECTORS.map(str::to_owned).to_vec(),
+        };
+        let socket = NatNetSocket::bind(address, Server::new(scene, self.multicast))
+            .map_err(|error| Failure::Tried(format!("{error}; choose another address or port")))?;
+        let place = socket
+            .local_addr()
+            .map_or_else(|_| address.to_string(), |address| address.to_string());
+        output.line(&format!("Its cameras stream NatNet at natnet:{place}."));
+        Ok(Some(CameraStream {
+            socket,
+            opened: Instant::now(),
+        }))
+    }
+
     fn faulty(&self, port: impl Port + 'static) -> Box<dyn Port> {
         if self.faults == Faults::none() {
             return Box::new(port);
@@ -183,6 +221,36 @@ impl Twin {
             self.seed,
         ))
     }
+}
+
+/// The virtual cameras behind a socket.
+struct CameraStream {
+    socket: NatNetSocket,
+    opened: Instant,
+}
+
+impl CameraStream {
+    /// Replies to requests, and sends the frames that were taken since.
+    fn stream(&mut self, world: &mut World) {
+        let now_s = self.opened.elapsed().as_secs_f64();
+        self.socket.reply(now_s);
+        let sent_s = world.now().as_secs_f64();
+        for (stamp, seen) in world.take_frames() {
+            self.socket.send(&twin_frame(&seen, stamp), sent_s, now_s);
+        }
+    }
+}
+
+/// An IPv4 address with or without a port.
+fn natnet_address(text: &str) -> Result<SocketAddrV4, String> {
+    text.parse()
+        .or_else(|_| {
+            text.parse::<Ipv4Addr>()
+                .map(|address| SocketAddrV4::new(address, COMMAND_PORT))
+        })
+        .map_err(|_| {
+            "write an IPv4 address of this computer, as 127.0.0.1 or 127.0.0.1:1510".to_owned()
+        })
 }
 
 #[cfg(unix)]

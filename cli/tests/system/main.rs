@@ -18,6 +18,8 @@ mod lab;
 #[cfg(unix)]
 mod laboratory;
 mod left_behind;
+#[cfg(unix)]
+mod natnet_stream;
 mod numbers;
 mod output_discipline;
 mod paper;
@@ -44,4 +46,5 @@ mod sweep;
 mod sweep_slurm;
 #[cfg(unix)]
 mod table;
+mod track;
 mod tracks;
