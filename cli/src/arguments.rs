@@ -4,13 +4,14 @@ use std::path::Path;
 use std::str::FromStr;
 use std::time::Duration;
 
-use swimmer_files::{
-    AnyGait, GaitFile, GaitSpec, Provenance, SwimmerFile, parse_angle, parse_rate,
+use operations::{
+    Context, Error, GaitSource, SwimmerSource, warn_if_for_another, warn_if_outdated,
 };
+use swimmer_files::{AnyGait, GaitFile, GaitSpec, SwimmerFile, parse_angle, parse_rate};
 use swimmer_model::Model;
 
 use crate::failure::{Failure, Outcome};
-use crate::output::aside;
+use crate::output::asides;
 
 /// An angle on the command line, in radians.
 pub(crate) fn angle(text: &str) -> Result<f64, String> {
@@ -130,71 +131,50 @@ pub(crate) fn gait(text: &str) -> Result<GaitSpec, String> {
         .map_err(|error: swimmer_files::GaitSpecError| error.to_string())
 }
 
-/// Loads what `--swimmer` names.
+/// Loads the swimmer that `--swimmer` names, and prints its warnings.
 pub(crate) fn load_swimmer(preset_or_path: &str) -> Outcome<SwimmerFile> {
-    let swimmer = SwimmerFile::find(preset_or_path)?;
-    if SwimmerFile::preset(preset_or_path).is_none() {
-        say_if_stale(Path::new(preset_or_path))?;
-    }
-    for doubt in swimmer.doubts() {
-        aside(&format!("warning: {}: {doubt}", swimmer.name));
-    }
-    Ok(swimmer)
+    printing(|context| SwimmerSource::from(preset_or_path).load(context))
 }
 
-/// Says so where a swimmer file was fitted from what is no longer the same.
+/// Prints a note if a swimmer file was fitted from data that changed since.
 pub(crate) fn say_if_stale(path: &Path) -> Outcome {
-    let folder = path.parent().unwrap_or_else(|| Path::new(""));
-    let made = Provenance::load(path)?;
-    for input in made.iter().flat_map(|made| made.changed(folder)) {
-        aside(&format!(
-            "note: {} was fitted from {input}, which has changed since; calibrate again",
-            path.display()
-        ));
-    }
-    Ok(())
+    printing(|context| warn_if_outdated(path, context))
 }
 
-/// Loads what `--gait` names.
+/// Loads the gait that `--gait` names.
 pub(crate) fn load_gait(spec: &GaitSpec) -> Outcome<AnyGait> {
     Ok(spec.load()?)
 }
 
-/// The same for this swimmer; says so where the file names another.
+/// Loads the gait that `--gait` names, for this swimmer. Prints a warning if the file names another swimmer.
 pub(crate) fn load_gait_for(swimmer: &SwimmerFile, spec: &GaitSpec) -> Outcome<AnyGait> {
-    Ok(spec.load_by(|path| {
-        GaitFile::load(path).inspect(|file| say_if_for_another(swimmer, file, spec))
-    })?)
+    printing(|context| GaitSource::from(spec).load_for(swimmer, context))
 }
 
-/// Says so where a gait file was made for another swimmer.
+/// Prints a warning if a gait file was made for another swimmer.
 pub(crate) fn say_if_for_another(swimmer: &SwimmerFile, file: &GaitFile, gait: &GaitSpec) {
-    if file.swimmer_hash.is_some_and(|hash| hash != swimmer.hash()) {
-        let named = file
-            .swimmer_name
-            .as_ref()
-            .map_or_else(String::new, |name| format!(" (it names {name})"));
-        aside(&format!(
-            "warning: {gait} was made for another swimmer than {}{named}",
-            swimmer.name
-        ));
-    }
+    let mut context = Context::on_disk();
+    warn_if_for_another(swimmer, file, &gait.to_string(), &mut context);
+    asides(&context);
+}
+
+/// Runs an operation on the file system and prints its warnings.
+fn printing<T>(operation: impl FnOnce(&mut Context) -> Result<T, Error>) -> Outcome<T> {
+    let mut context = Context::on_disk();
+    let done = operation(&mut context);
+    asides(&context);
+    Ok(done?)
 }
 
 /// The model of a swimmer.
 pub(crate) fn model(file: &SwimmerFile) -> Outcome<Model<f64>> {
-    Model::new(&file.swimmer).map_err(|error| {
-        Failure::BadInput(format!("the swimmer `{}` cannot swim: {error}", file.name))
-    })
+    Ok(operations::model(file)?)
 }
 
 impl From<swimmer_files::FileError> for Failure {
     /// A file that cannot be read, or says something wrong, is bad input; one that cannot be written is a failed try.
     fn from(error: swimmer_files::FileError) -> Self {
-        match error {
-            swimmer_files::FileError::Write { .. } => Self::tried(&error),
-            _ => Self::bad_input(&error),
-        }
+        Error::from(error).into()
     }
 }
 

@@ -1,5 +1,8 @@
 //! The ways a command can go wrong, and the exit status each of them has.
 
+use forecast::ForecastError;
+use operations::{Error, ErrorKind};
+
 use crate::output::verbose;
 
 /// Why a command did not do its job; the text says what was being done, to what, and what to do next.
@@ -26,7 +29,7 @@ pub(crate) type Outcome<T = ()> = Result<T, Failure>;
 impl Failure {
     /// A job that was tried and failed, with every cause that the error names.
     pub(crate) fn tried(error: &dyn std::error::Error) -> Self {
-        Self::Tried(with_causes(error))
+        Error::failed(error).into()
     }
 
     /// The same with what only an expert asks for: said with `--verbose`, else only that there is more.
@@ -34,7 +37,7 @@ impl Failure {
         error: &dyn std::error::Error,
         details: Option<String>,
     ) -> Self {
-        let said = with_causes(error);
+        let said = Error::failed(error).message;
         Self::Tried(match details {
             None => said,
             Some(details) if verbose() => format!("{said}\n  {details}"),
@@ -44,7 +47,7 @@ impl Failure {
 
     /// Input that cannot be used, with every cause that the error names.
     pub(crate) fn bad_input(error: &dyn std::error::Error) -> Self {
-        Self::BadInput(with_causes(error))
+        Error::bad_input(error).into()
     }
 
     /// The exit status that scripts see.
@@ -56,48 +59,17 @@ impl Failure {
     }
 }
 
-/// The error and its causes in one line; a cause that its parent already quotes is not said twice.
-fn with_causes(error: &dyn std::error::Error) -> String {
-    let mut text = error.to_string();
-    let mut next = error.source();
-    while let Some(cause) = next {
-        let cause_text = cause.to_string();
-        if !text.contains(&cause_text) {
-            text.push_str(": ");
-            text.push_str(&cause_text);
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
+        match error.kind {
+            ErrorKind::BadInput => Self::BadInput(error.message),
+            ErrorKind::Failed => Self::Tried(error.message),
         }
-        next = cause.source();
     }
-    text
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[derive(Debug, thiserror::Error)]
-    #[error("cannot read track.csv")]
-    struct Outer {
-        source: std::io::Error,
-    }
-
-    #[derive(Debug, thiserror::Error)]
-    #[error("cannot read track.csv: {source}")]
-    struct Quoting {
-        source: std::io::Error,
-    }
-
-    #[test]
-    fn causes_are_told_once() {
-        let cause = || std::io::Error::other("disk on fire");
-        let expected = "cannot read track.csv: disk on fire";
-        assert_eq!(
-            Failure::tried(&Outer { source: cause() }).to_string(),
-            expected
-        );
-        assert_eq!(
-            Failure::bad_input(&Quoting { source: cause() }).to_string(),
-            expected
-        );
+impl From<ForecastError> for Failure {
+    fn from(error: ForecastError) -> Self {
+        Error::from(error).into()
     }
 }

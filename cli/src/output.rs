@@ -6,6 +6,7 @@ use std::io::{self, Write};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use operations::Context;
 use serde::Serialize;
 
 use crate::failure::{Failure, Outcome};
@@ -88,6 +89,16 @@ impl Output {
         write_all(&text);
     }
 
+    /// Prints the output of an operation, once, at the end of its command: as JSON, or as text.
+    pub(crate) fn rendered(self, output: &impl Serialize, text: &impl fmt::Display) {
+        let text = if self.json {
+            document(output)
+        } else {
+            format!("{text}\n")
+        };
+        write_all(&text);
+    }
+
     /// A line for people while the command runs: standard output, or standard error when that is kept for JSON.
     pub(crate) fn line(self, text: &str) {
         if self.json {
@@ -116,6 +127,13 @@ pub(crate) fn aside(text: &str) {
         return;
     }
     let _ = writeln!(io::stderr().lock(), "{text}");
+}
+
+/// Prints the warnings of an operation on standard error.
+pub(crate) fn asides(context: &Context) {
+    for warning in &context.warnings {
+        aside(warning);
+    }
 }
 
 /// The JSON document that stands for a failure.

@@ -1,17 +1,16 @@
 //! Whether the robot of a swimmer file can play a gait, in the words of `robot upload`.
 
-use forecast::{Played, Servos, forecast};
+use forecast::forecast;
 use gait_optimizer::OptimalGait;
-use link_protocol::MAX_KNOTS;
+use operations::fluid::FluidLoad;
+use operations::robot_limits::{self, ADVICE, exceeded, played};
 use serde::Serialize;
 use swimmer_files::{AnyGait, ServoFile, SwimmerFile};
 use swimmer_model::Model;
 
-use crate::in_fluid::InFluid;
 use crate::output::aside;
 
-/// A cycle's duration where none is named, s: the paper's.
-pub(crate) const PERIOD_S: f64 = 30.0;
+pub(crate) use operations::robot_limits::PERIOD_S;
 
 /// The limit of each servo \[rad/s\]: what was told (the second is the first where only one is), and the robot's own where gaits
 /// shall be playable; none where neither was said.
@@ -64,43 +63,10 @@ impl PlayedSpeed {
     }
 }
 
-fn played(servo: ServoFile, period: f64) -> Played {
-    Played {
-        servos: Servos::on_the_robot(servo),
-        period,
-        knots: MAX_KNOTS,
-    }
-}
-
-/// Where a gait goes beyond the `[servo]` of the file: angle, clearance of the links, rate at this period.
-fn beyond(file: &SwimmerFile, gait: &AnyGait, period: f64) -> Option<String> {
-    let (Some(servo), Ok(model)) = (file.servo, Model::new(&file.swimmer)) else {
-        return None;
-    };
-    match forecast(&model, gait, &played(servo, period)) {
-        Err(error) => Some(error.to_string()),
-        Ok(foretold) => match foretold.verdict.refused {
-            Some(refused) => Some(format!("the robot would refuse: {refused}")),
-            None if foretold.verdict.min_period > period => Some(format!(
-                "at {period} s a cycle the gait turns the joints faster than the servos' {:.1}°/s; the robot plays it in {:.2} s at least",
-                servo.max_rate.to_degrees(),
-                foretold.verdict.min_period
-            )),
-            None => None,
-        },
-    }
-}
-
-/// What helps.
-const ADVICE: &str = "`swimmer optimize … --playable` keeps a gait within angle and clearance; a longer period keeps it within the rate";
-
 /// Says so where the gait goes beyond the robot of the file.
 pub(crate) fn say_if_beyond_servos(file: &SwimmerFile, gait: &AnyGait, period: f64) {
-    if let Some(reason) = beyond(file, gait, period) {
-        aside(&format!(
-            "warning: {}, at {period} s a cycle: {reason} ({ADVICE})",
-            file.name
-        ));
+    if let Some(warning) = robot_limits::warning(file, gait, period) {
+        aside(&warning);
     }
 }
 
@@ -108,8 +74,9 @@ pub(crate) fn say_if_beyond_servos(file: &SwimmerFile, gait: &AnyGait, period: f
 pub(crate) fn say_if_beyond(file: &SwimmerFile, gait: &AnyGait, period: f64) {
     say_if_beyond_servos(file, gait, period);
     let model = Model::new(&file.swimmer).ok();
-    if let Some(fluid) = model.and_then(|model| InFluid::new(file, &model, gait, period)) {
-        fluid.warn();
+    let load = model.and_then(|model| FluidLoad::new(file, &model, gait, period));
+    for warning in load.iter().flat_map(FluidLoad::warnings) {
+        aside(&warning);
     }
 }
 
@@ -126,7 +93,7 @@ pub(crate) fn say_how_many_are_beyond<'a>(
     for (number, gait) in gaits.enumerate() {
         count += 1;
         let curve = AnyGait::from_file(&gait.gait_file(&file.name)).ok();
-        if let Some(reason) = curve.and_then(|curve| beyond(file, &curve, PERIOD_S)) {
+        if let Some(reason) = curve.and_then(|curve| exceeded(file, &curve, PERIOD_S)) {
             those += 1;
             first.get_or_insert((number + 1, reason));
         }

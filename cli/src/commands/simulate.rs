@@ -5,22 +5,22 @@ pub(crate) mod played;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use forecast::NetMotion;
-use serde::Serialize;
+use operations::{Context, GaitSource, Subject, SwimmerSource, simulate};
 use swimmer_files::{AnyGait, GaitSpec, write_atomically};
-use swimmer_model::{CrossingShare, Model, Pose, Tolerance, crossing_share, swim, trajectory};
+use swimmer_model::{Model, Pose, Tolerance, trajectory};
 
-use crate::arguments::{gait, load_gait_for, load_swimmer, model};
+use crate::arguments::gait;
 use crate::csv_text::csv_text;
 use crate::failure::Outcome;
-use crate::in_fluid::InFluid;
+use crate::in_fluid::fluid_rows;
 use crate::new_file::may_be_written;
-use crate::output::Output;
-use crate::own_robot;
+use crate::output::{Output, asides};
 use crate::picture_file::Kind;
 use crate::quantity::{self, Rows};
 use crate::report::style::number;
 use crate::report::swimming::{ANIMATION_SIZE, FRAMES_PER_SECOND, Swimming, animation, snapshots};
+
+use played::played_rows;
 
 /// Swim a gait in the model and print what one cycle brings
 #[derive(Debug, clap::Args)]
@@ -44,34 +44,16 @@ pub(crate) struct Simulate {
     playing: played::Playing,
 }
 
-/// One cycle, the first.
-#[derive(Debug, Serialize)]
-struct Swum {
-    #[serde(skip)]
-    title: String,
-    #[serde(skip)]
-    crossing: CrossingShare<f64>,
-    /// Share of the cycle in which links cross.
-    links_cross: f64,
-    #[serde(flatten)]
-    net: NetMotion,
-    /// What the robot will make of it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    played: Option<played::PlayedAnswer>,
-    /// In the fluid of the swimmer file.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    fluid: Option<InFluid>,
-    /// The table that was written.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    trajectory: Option<PathBuf>,
-    /// The picture that was drawn.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    picture: Option<PathBuf>,
+/// Output as text.
+struct Text<'a> {
+    title: &'a str,
+    output: &'a simulate::Output,
 }
 
-impl fmt::Display for Swum {
+impl fmt::Display for Text<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let net = &self.net;
+        let output = self.output;
+        let net = &output.net;
         let mut rows = Rows::default();
         rows.row(
             "displacement X",
@@ -98,17 +80,20 @@ impl fmt::Display for Swum {
                 net.efficiency, net.efficiency_constant_power
             ),
         )
-        .row("links cross", quantity::crossing_or_folding(&self.crossing));
-        if let Some(played) = &self.played {
-            played.rows(&mut rows);
+        .row(
+            "links cross",
+            quantity::crossing_or_folding(&output.crossing),
+        );
+        if let Some(played) = &output.played {
+            played_rows(played, &mut rows);
         }
-        if let Some(fluid) = &self.fluid {
-            fluid.rows(&mut rows);
+        if let Some(load) = &output.fluid {
+            fluid_rows(load, &mut rows);
         }
-        if let Some(path) = &self.trajectory {
+        if let Some(path) = &output.trajectory {
             rows.row("written to", path.display().to_string());
         }
-        if let Some(path) = &self.picture {
+        if let Some(path) = &output.picture {
             rows.row("drawn to", drawn(path));
         }
         write!(f, "{}\n{rows}", self.title)
@@ -119,55 +104,57 @@ impl fmt::Display for Swum {
 const POINTS_A_CYCLE: usize = 500;
 
 impl Simulate {
-    /// Swims the gait and answers.
+    /// Simulates the gait, writes trajectory and picture, and prints the output.
     pub(crate) fn run(self, output: Output) -> Outcome {
         self.trajectory.as_deref().map_or(Ok(()), may_be_written)?;
         let kind = self.picture.as_deref().map(picture_kind).transpose()?;
-        let file = load_swimmer(&self.swimmer)?;
-        let gait = load_gait_for(&file, &self.gait)?;
-        let model = model(&file)?;
-        let crossing = crossing_share(&file.swimmer.links, &gait);
-        let stroke = swim(&model, &gait, &Tolerance::default());
-        let swum = Swum {
-            title: format!("{}, {}", file.name, self.gait.readable()),
-            links_cross: crossing.of_cycle,
-            crossing,
-            net: (&stroke).into(),
-            played: self.playing.forecast(&file, &model, &gait)?,
-            fluid: InFluid::new(&file, &model, &gait, self.playing.period),
-            trajectory: self.trajectory.clone(),
-            picture: self.picture.clone(),
-        };
-        own_robot::say_if_beyond_servos(&file, &gait, self.playing.period);
-        if let Some(fluid) = &swum.fluid {
-            fluid.warn();
-        }
+        let mut context = Context::on_disk();
+        let subject = Subject::load(
+            &SwimmerSource::from(self.swimmer.as_str()),
+            &GaitSource::from(&self.gait),
+            &mut context,
+        )
+        .and_then(|subject| {
+            let simulated = simulate::run(&subject, &self.playing.options(), &mut context)?;
+            Ok((subject, simulated))
+        });
+        asides(&context);
+        let (Subject { file, model, gait }, mut simulated) = subject?;
+        simulated.trajectory.clone_from(&self.trajectory);
+        simulated.picture.clone_from(&self.picture);
+        let title = format!("{}, {}", file.name, self.gait.readable());
         if let Some(path) = &self.trajectory {
             write_trajectory(path, &model, &gait, self.cycles)?;
         }
         if let (Some(path), Some(kind)) = (&self.picture, kind) {
             let cycles = if kind == Kind::Gif { 1 } else { self.cycles };
-            let over_length = number(swum.net.displacement_over_length, 4);
-            let title = format!("{}: X/L = {over_length} a cycle", swum.title);
-            let swimming = Swimming::in_the_model(title, &model, &gait, cycles);
+            let over_length = number(simulated.net.displacement_over_length, 4);
+            let caption = format!("{title}: X/L = {over_length} a cycle");
+            let swimming = Swimming::in_the_model(caption, &model, &gait, cycles);
             match kind {
                 Kind::Gif => write_atomically(path, &animation(&swimming)?)?,
                 kind => kind.write(path, &snapshots(&swimming))?,
             }
         }
-        output.answer(&swum);
+        output.rendered(
+            &simulated,
+            &Text {
+                title: &title,
+                output: &simulated,
+            },
+        );
         Ok(())
     }
 }
 
-/// What a picture's name asks for, asked before anything is done.
+/// Format of a picture by its file name, checked before anything is computed.
 fn picture_kind(path: &Path) -> Outcome<Kind> {
     let kind = Kind::of(path, &[Kind::Svg, Kind::Png, Kind::Gif])?;
     may_be_written(path)?;
     Ok(kind)
 }
 
-/// Where the picture is; of an animation also how large and how fast.
+/// Path of the picture; for an animation also its size and frame rate.
 fn drawn(path: &Path) -> String {
     let place = path.display();
     match Kind::of(path, &[Kind::Gif]) {
@@ -179,7 +166,7 @@ fn drawn(path: &Path) -> String {
     }
 }
 
-/// One line for each instant; the pose starts at the origin along x and goes on from cycle to cycle.
+/// Writes one row for each instant. The pose starts at the origin along x and continues from cycle to cycle.
 fn write_trajectory(path: &Path, model: &Model<f64>, gait: &AnyGait, cycles: u32) -> Outcome {
     let mut rows = Vec::new();
     let mut start = Pose::identity();

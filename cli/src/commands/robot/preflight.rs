@@ -14,7 +14,9 @@ use twin::is_configured_as;
 
 use super::playing::duration;
 use crate::arguments::{angle, period};
-use crate::commands::simulate::played::PlayedAnswer;
+use operations::played::PlayedCycle;
+
+use crate::commands::simulate::played::played_rows;
 use crate::failure::{Failure, Outcome};
 use crate::fit_file::load_fit;
 use crate::quantity::{self, Rows};
@@ -150,7 +152,7 @@ pub(super) struct Preflight {
     level: Option<f64>,
     tank: Option<TankAnswer>,
     #[serde(flatten)]
-    played: PlayedAnswer,
+    played: PlayedCycle,
     /// Why it must not be played although the robot would.
     #[serde(skip)]
     pub(super) unseen_by_robot: Option<String>,
@@ -273,7 +275,7 @@ impl Preflight {
             displacement_error_m: None,
             level: None,
             tank: None,
-            played: PlayedAnswer::new(told),
+            played: PlayedCycle::new(told),
             unseen_by_robot: told
                 .verdict
                 .refused
@@ -322,7 +324,7 @@ impl fmt::Display for Preflight {
                 }
             ),
         );
-        self.played.rows(&mut rows);
+        played_rows(&self.played, &mut rows);
         rows.row(
             "error of X",
             match (self.displacement_error_m, self.level) {

@@ -1,0 +1,105 @@
+//! Net motion of one cycle of a gait.
+
+use std::path::PathBuf;
+
+use forecast::{NetMotion, Played, Servos, forecast};
+use serde::{Deserialize, Serialize};
+use swimmer_model::{CrossingShare, Tolerance, crossing_share, swim};
+
+use crate::fluid::FluidLoad;
+use crate::played::PlayedCycle;
+use crate::{Context, Error, Subject, robot_limits};
+
+/// Options of a simulation.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(default)]
+pub struct Options {
+    /// Duration of a cycle \[s\].
+    pub period_s: f64,
+    /// Also forecast the cycle as the robot plays it.
+    pub played: Option<PlayedOptions>,
+}
+
+/// How the robot plays the gait.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+pub struct PlayedOptions {
+    /// Knots of the robot's table.
+    pub knots: usize,
+    /// Step of the timer that makes the pulses \[ns\]; 0 for none.
+    pub pulse_step_ns: u32,
+}
+
+impl Default for Options {
+    /// The paper's cycle of 30 s, in the model alone.
+    fn default() -> Self {
+        Self {
+            period_s: robot_limits::PERIOD_S,
+            played: None,
+        }
+    }
+}
+
+/// One cycle. The JSON document of `swimmer simulate`.
+#[derive(Debug, Clone, Serialize)]
+pub struct Output {
+    /// Share of the cycle in which links cross, for text output.
+    #[serde(skip)]
+    pub crossing: CrossingShare<f64>,
+    /// Share of the cycle in which links cross.
+    pub links_cross: f64,
+    /// Net motion, over the total length and in SI units.
+    #[serde(flatten)]
+    pub net: NetMotion,
+    /// The cycle as the robot plays it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub played: Option<PlayedCycle>,
+    /// Torque, power and Reynolds number, if the swimmer file names a fluid.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fluid: Option<FluidLoad>,
+    /// Table of the trajectory, if the front end wrote one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub trajectory: Option<PathBuf>,
+    /// Picture, if the front end drew one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub picture: Option<PathBuf>,
+}
+
+/// Simulates one cycle. Warns if the gait is beyond the servos or the fluid of the swimmer file.
+///
+/// # Errors
+/// The robot cannot play the gait, and [`Options::played`] is given.
+pub fn run(subject: &Subject, options: &Options, context: &mut Context) -> Result<Output, Error> {
+    let Subject { file, model, gait } = subject;
+    let crossing = crossing_share(&file.swimmer.links, gait);
+    let stroke = swim(model, gait, &Tolerance::default());
+    let played = options
+        .played
+        .map(|played| {
+            let played = Played {
+                servos: Servos {
+                    file: file.servo.unwrap_or_default(),
+                    pulse_step_ns: played.pulse_step_ns,
+                },
+                period: options.period_s,
+                knots: played.knots,
+            };
+            forecast(model, gait, &played)
+        })
+        .transpose()?;
+    let output = Output {
+        crossing,
+        links_cross: crossing.of_cycle,
+        net: (&stroke).into(),
+        played: played.as_ref().map(PlayedCycle::new),
+        fluid: FluidLoad::new(file, model, gait, options.period_s),
+        trajectory: None,
+        picture: None,
+    };
+    context
+        .warnings
+        .extend(robot_limits::warning(file, gait, options.period_s));
+    context
+        .warnings
+        .extend(output.fluid.iter().flat_map(FluidLoad::warnings));
+    Ok(output)
+}
