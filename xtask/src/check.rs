@@ -50,6 +50,13 @@ pub(crate) fn all() -> Outcome {
             if required { Err(failure) } else { Ok(()) }
         })
     });
+    // A system test reads the twin's NatNet stream with a Python package, in an environment of its own.
+    steps.take("Python for system tests", || {
+        python::ensure().or_else(|failure| {
+            println!("{failure}");
+            if required { Err(failure) } else { Ok(()) }
+        })
+    });
     steps.take("clippy for the host", || {
         run(
             cargo(["clippy", "--workspace", "--all-targets"]).args(["--", "-D", "warnings"]),

@@ -34,6 +34,14 @@ pub(crate) fn test(required: bool) -> Outcome {
     }
 }
 
+/// Finds Python with `venv`, or installs it. System tests make environments of their own with it.
+///
+/// # Errors
+/// It is missing and cannot be installed.
+pub(crate) fn ensure() -> Outcome {
+    debian::ensure_tool(python3().args(["-c", ABLE]), &["python3", "python3-venv"])
+}
+
 /// Python environment with the pinned packages.
 struct Environment {
     folder: PathBuf,
@@ -41,7 +49,7 @@ struct Environment {
 
 impl Environment {
     fn find_or_make() -> Outcome<Self> {
-        debian::ensure_tool(python3().args(["-c", ABLE]), &["python3", "python3-venv"])?;
+        ensure()?;
         let folder = target_folder()?.join("python");
         let environment = Self { folder };
         let wanted = fs::read_to_string(REQUIREMENTS)
