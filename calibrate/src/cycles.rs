@@ -27,7 +27,7 @@ use crate::poses::{Jump, Origin, PoseSample, PoseTrack};
 use clock::Bin;
 pub(crate) use clock::shift;
 pub(crate) use curve::{Curve, Harmonics, Projection};
-pub use error::CycleError;
+pub use error::{CycleError, Loss};
 use fitted_cycle::FittedCycle;
 use periodicity::Judgement;
 pub use periodicity::Periodicity;
@@ -43,8 +43,12 @@ const REFINEMENTS: usize = 2;
 const CLOCKS_DIFFER: f64 = 1e-3;
 /// Fewer samples in a cycle than this draw no curve.
 const FEWEST_SAMPLES: f64 = 24.0;
-/// Share of a cycle's samples that may be missing.
+/// Share of a cycle's samples that may be missing in gaps that show in its curve,
 const MOST_MISSING: f64 = 0.1;
+/// and share that may be missing at all: frames that are lost one by one leave the curve as it is, only less sure.
+const MOST_LOST: f64 = 0.5;
+/// A filled gap up to this share of a cycle, or of one frame, does not show: it is a twentieth of the highest harmonic's half wave.
+const SHORT_GAP: f64 = 0.005;
 
 /// One cycle.
 #[derive(Debug, Clone, PartialEq)]
@@ -215,7 +219,8 @@ impl Clock {
         if let Some(known) = self.starts.known(self.motion_s) {
             return Ok(known);
         }
-        let rough = self.rough_start(model)?;
+        let lost = |cause| Loss::of_most(track).map_or(cause, CycleError::Lost);
+        let rough = self.rough_start(model).map_err(lost)?;
         let mut start = self.starts.nearest(rough, self.motion_s, self.period_s);
         for _ in 0..REFINEMENTS {
             // Why there are no cycles, the caller will hear when it asks for them.
@@ -303,14 +308,17 @@ impl Clock {
                 continue;
             }
             let segment = track.jumps.partition_point(|jump| jump.before_s < start);
+            let whole = period * track.rate_hz;
             let tracked = samples.iter().filter(|s| !s.is_filled()).count();
-            let missing = (1.0 - tracked as f64 / (period * track.rate_hz)).max(0.0);
+            let missing = (1.0 - tracked as f64 / whole).max(0.0);
+            let shown =
+                missing - in_short_gaps(samples, (SHORT_GAP * whole).max(1.0)) as f64 / whole;
             let trusted = samples.iter().filter(|s| s.origin != Origin::Tail);
             let curve = Curve::fit(
                 trusted.map(|s| ((s.time_s - start) / period, s.pose)),
                 1.0 / (period * track.rate_hz),
             );
-            match curve.filter(|_| missing <= MOST_MISSING) {
+            match curve.filter(|_| shown <= MOST_MISSING && missing <= MOST_LOST) {
                 Some((curve, residual_m)) => drawn.push(FittedCycle {
                     start_s: start,
                     missing,
@@ -330,6 +338,7 @@ impl Clock {
                 active_s,
                 period_s: period,
                 left_out: left_out.len(),
+                loss: Loss::of(track, &left_out),
             });
         };
         let lone = lone.own_step();
@@ -366,13 +375,25 @@ fn no_motion(track: &PoseTrack, period_s: f64) -> CycleError {
     let ends = track.samples.first().zip(track.samples.last());
     let track_s = ends.map_or(0.0, |(first, last)| last.time_s - first.time_s);
     let samples = period_s * track.rate_hz;
-    if track_s < 2.0 * period_s {
+    if let Some(loss) = Loss::of_most(track) {
+        CycleError::Lost(loss)
+    } else if track_s < 2.0 * period_s {
         CycleError::TooShort { track_s, period_s }
     } else if samples < FEWEST_SAMPLES {
         CycleError::TooQuick { samples, period_s }
     } else {
         CycleError::NoMotion
     }
+}
+
+/// How many samples are filled in gaps of at most so many.
+fn in_short_gaps(samples: &[PoseSample], longest: f64) -> usize {
+    let gaps = samples.chunk_by(|a, b| a.is_filled() == b.is_filled());
+    let short = gaps.filter(|gap| gap.first().is_some_and(PoseSample::is_filled));
+    short
+        .map(<[PoseSample]>::len)
+        .filter(|rows| *rows as f64 <= longest)
+        .sum()
 }
 
 /// Samples in \[start, start + period).

@@ -11,7 +11,9 @@ use swimmer_files::{
 use crate::cycles::Timing;
 use crate::error::CalibrateError;
 use crate::link_log::Logged;
-use crate::tracks::{TrackFile, TrackOptions, TrackSurvey, read_tracks_with, survey_tracks};
+use crate::tracks::{
+    TrackFile, TrackOptions, TrackSurvey, UsedPoints, read_tracks_with, survey_tracks,
+};
 
 /// One run, read.
 #[derive(Debug, Clone)]
@@ -35,12 +37,19 @@ pub struct RunData {
 impl RunData {
     /// The reflectors of this run, by those of all runs.
     pub(crate) fn reflectors(&self, common: &Reflectors) -> Reflectors {
-        let mut own = common.clone();
-        if let Some(front) = &self.front {
-            own.front.point = front.clone();
-        }
-        own
+        reflectors_of(common, self.front.as_ref())
     }
+}
+
+/// The reflectors of a run whose front one, or rigid body, may be another than that of all runs.
+fn reflectors_of(common: &Reflectors, front: Option<&PointName>) -> Reflectors {
+    let mut own = common.clone();
+    match (front, &mut own.body) {
+        (Some(PointName::Named(name)), Some(body)) => body.name.clone_from(name),
+        (Some(front), _) => own.front.point = front.clone(),
+        (None, _) => {}
+    }
+    own
 }
 
 /// Everything that a campaign names, read.
@@ -85,6 +94,7 @@ impl CampaignData {
     ) -> Result<Self, CalibrateError> {
         let mut files = Files {
             common: track_options(&campaign.reflectors, &campaign.tracks),
+            reflectors: &campaign.reflectors,
             open,
             logs: Vec::new(),
         };
@@ -103,15 +113,16 @@ impl CampaignData {
 }
 
 /// What a campaign names, one file after the other.
-struct Files<O> {
+struct Files<'a, O> {
     /// Of all tracks.
     common: TrackOptions,
+    reflectors: &'a Reflectors,
     open: O,
     /// Several runs may have been plays of one log.
     logs: Vec<(PathBuf, Logged)>,
 }
 
-impl<R: Read, O: Fn(&Path) -> io::Result<R>> Files<O> {
+impl<R: Read, O: Fn(&Path) -> io::Result<R>> Files<'_, O> {
     fn open(&self, file: &Path) -> Result<R, CalibrateError> {
         (self.open)(file).map_err(|cause| unreadable(file, &cause))
     }
@@ -123,6 +134,8 @@ impl<R: Read, O: Fn(&Path) -> io::Result<R>> Files<O> {
         if let Some(PointName::Columns(x, y)) = &run.front {
             options.pairs.push([x.clone(), y.clone()]);
         }
+        let reflectors = reflectors_of(self.reflectors, run.front.as_ref());
+        options.used = Some(UsedPoints::of(&reflectors));
         let data = RunData {
             track: read_tracks_with(self.open(&run.track)?, &run.track, &options)?,
             file: run.track.clone(),
@@ -221,6 +234,7 @@ pub fn track_options(reflectors: &Reflectors, settings: &TrackSettings) -> Track
             .into_iter()
             .filter_map(|r| pair(&r.point))
             .collect(),
+        used: Some(UsedPoints::of(reflectors)),
     }
 }
 

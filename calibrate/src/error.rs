@@ -84,6 +84,9 @@ impl CalibrateError {
                         | PoseError::SamePlace
                         | PoseError::SamePoint { .. }
                         | PoseError::NoScale { .. }
+                        | PoseError::NoBody { .. }
+                        | PoseError::BodyUnseen { .. }
+                        | PoseError::BodyAxis { .. }
                 )
             }
             Self::Fit(cause) => matches!(

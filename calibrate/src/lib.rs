@@ -87,7 +87,7 @@ pub use advice::{Advice, Candidate, advise};
 pub use assessment::{Assessment, Verdict, assess};
 pub use campaign::calibrate_campaign;
 pub use cycles::{
-    Cycle, CycleError, CycleWarning, Cycles, LeftOut, Periodicity, Phase, Statistics, Timing,
+    Cycle, CycleError, CycleWarning, Cycles, LeftOut, Loss, Periodicity, Phase, Statistics, Timing,
 };
 pub use data::{CampaignData, RunData, load_run, load_tracks, survey_file, track_options};
 pub use error::{CalibrateError, FitError};
@@ -105,6 +105,7 @@ pub use prediction::{PredictedCycle, PredictionError, joint_path, predict};
 pub use run::{RunResult, calibrate_run};
 pub use tracks::{
     PointKind, PointPresence, TrackError, TrackFile, TrackFormat, TrackOptions, TrackPoint,
-    TrackProblem, TrackSurvey, TrackWarning, Unit, read_tracks, read_tracks_with, survey_tracks,
+    TrackProblem, TrackSurvey, TrackWarning, Unit, UsedPoints, read_tracks, read_tracks_with,
+    survey_tracks,
 };
 pub use wrong_gait::{OtherGait, amplitude_by_sway, other_gaits};

@@ -24,14 +24,13 @@ use std::f64::consts::TAU;
 use std::fmt;
 
 use nalgebra::{Vector2, Vector3};
-use swimmer_files::{PointName, Reflectors};
+use swimmer_files::{PointName, Reflectors, RigidBody};
 use swimmer_model::{Pose, Swimmer, wrapped_angle};
 
 use crate::TrackFile;
 use assembly::Assembly;
 pub use error::PoseError;
 use fill::Seen;
-pub(crate) use follow::is_called;
 pub use follow::{FollowReport, Stretch};
 pub use jumps::Jump;
 pub use plane::Plane;
@@ -86,6 +85,8 @@ pub enum FrontRule {
     Label,
     /// By which of the two was nearer to a place in the first frame.
     Place,
+    /// By the orientation of a rigid body.
+    Body,
     /// By nothing yet: forwards is where the model says that the robot swims.
     Travel,
 }
@@ -96,6 +97,7 @@ impl FrontRule {
         match self {
             Self::Label => "label",
             Self::Place => "place",
+            Self::Body => "body",
             Self::Travel => "travel",
         }
     }
@@ -106,6 +108,7 @@ impl fmt::Display for FrontRule {
         f.write_str(match self {
             Self::Label => "by the points' names",
             Self::Place => "nearer to the place given, in the first frame",
+            Self::Body => "by the rigid body's orientation",
             Self::Travel => "by the direction of travel",
         })
     }
@@ -226,16 +229,12 @@ impl PoseTrack {
     }
 }
 
-/// The reflectors that a file and a swimmer suggest when nobody says: points called `Front` and `Back` if they are there,
-/// whatever two points keep the right distance if not; at the ends of the middle link.
+/// The reflectors that a file and a swimmer suggest when nobody says: points called `Front` and `Back` if they are there; else the
+/// only rigid body, if there are no two measured points; else whatever two points keep the right distance; at the ends of the
+/// middle link.
 pub fn usual_reflectors(track: &TrackFile, swimmer: &Swimmer<f64>) -> Reflectors {
     let reach = swimmer.links.middle / 2.0;
-    let named = |name: &str| {
-        track
-            .points
-            .iter()
-            .any(|point| follow::is_called(point, name))
-    };
+    let named = |name: &str| track.points.iter().any(|point| point.is_called(name));
     let both = named("Front") && named("Back");
     let reflector = |name: &str, at| swimmer_files::Reflector {
         point: if both {
@@ -248,8 +247,17 @@ pub fn usual_reflectors(track: &TrackFile, swimmer: &Swimmer<f64>) -> Reflectors
     Reflectors {
         front: reflector("Front", [reach, 0.0]),
         back: reflector("Back", [-reach, 0.0]),
+        body: lone_body(track).filter(|_| !both),
         sides: None,
     }
+}
+
+/// The only point with an orientation, if no two measured points could be the reflectors.
+fn lone_body(track: &TrackFile) -> Option<RigidBody> {
+    let mut oriented = track.points.iter().filter(|point| point.is_oriented());
+    let body = oriented.next().filter(|_| oriented.next().is_none())?;
+    let measured = track.points.iter().filter(|point| point.kind.is_measured());
+    (measured.count() < 2).then(|| RigidBody::named(body.name.clone()))
 }
 
 /// The middle link's poses of a track.
@@ -286,6 +294,11 @@ pub fn poses(
         warnings.push(PoseWarning::AmbiguousGaps {
             segments: followed.lost_segments,
             rows: followed.lost_rows,
+        });
+    }
+    if followed.tipped > 0 {
+        warnings.push(PoseWarning::Tipped {
+            rows: followed.tipped,
         });
     }
     if followed.frozen.rows > 0 {
@@ -333,7 +346,9 @@ pub fn poses(
         rate_hz: track.rate_hz,
         plane,
         report: followed.report,
-        front: if followed.order_known {
+        front: if reflectors.body.is_some() {
+            FrontRule::Body
+        } else if followed.order_known {
             FrontRule::Label
         } else {
             FrontRule::Travel

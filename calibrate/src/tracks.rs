@@ -13,8 +13,10 @@
 //! | Qualisys TSV | `qtm` | `qtm` |
 //! | Vicon CSV: trajectories, objects, segments | `vicon` | `vicon` |
 //! | SLEAP analysis CSV | `sleap` | `sleap` |
-//! | Kinovea, text of trajectories and CSV | `kinovea` | `kinovea`, `table` |
-//! | a table with named columns | `table` | `table` |
+//! | Kinovea, text of trajectories, CSV and KVA | `kinovea` | `kinovea`, `table`, `xml` |
+//! | TrackMate, spots as CSV, tracks and whole files as XML | `trackmate` | `table/long`, `xml` |
+//! | a table with named columns; poses without any header | `table` | `table`, `pose_table` |
+//! | a table of one row for each point in each frame: ArUco, trackpy | `long-table` | `table/long` |
 //!
 //! Files go by line by line. [`read_tracks`] keeps the places of points, so memory grows with those alone; [`survey_tracks`] keeps
 //! none and needs the same memory for any length of file (but for exports with a clock for each track: Tracker side by side
@@ -38,11 +40,14 @@ mod merged;
 mod number;
 mod options;
 mod point;
+mod pose_table;
 mod qtm;
 mod records;
+mod rotation;
 mod rows;
 mod sleap;
 mod source;
+mod stamp;
 mod survey;
 mod table;
 mod timeline;
@@ -53,6 +58,7 @@ mod utf16;
 mod vicon;
 mod warning;
 mod wide;
+mod xml;
 
 use std::fmt;
 use std::io::Read;
@@ -61,7 +67,7 @@ use std::path::Path;
 use swimmer_files::Axes;
 
 pub use error::{Place, TrackError, TrackProblem};
-pub use options::TrackOptions;
+pub use options::{TrackOptions, UsedPoints};
 pub use point::{PointKind, TrackPoint};
 pub use survey::{PointPresence, TrackSurvey};
 pub use unit::Unit;
@@ -95,6 +101,10 @@ pub enum TrackFormat {
     Sleap,
     /// Kinovea.
     Kinovea,
+    /// TrackMate.
+    TrackMate,
+    /// A table of one row for each point in each frame.
+    LongTable,
     /// A table with named columns.
     Table,
 }
@@ -112,6 +122,8 @@ impl fmt::Display for TrackFormat {
             Self::Vicon => "vicon",
             Self::Sleap => "sleap",
             Self::Kinovea => "kinovea",
+            Self::TrackMate => "trackmate",
+            Self::LongTable => "long-table",
             Self::Table => "table",
         })
     }
@@ -179,6 +191,7 @@ impl Draft {
     fn finish(mut self, reading: &Reading<'_>) -> Result<Finished, TrackError> {
         let options = reading.options;
         let mut warnings = std::mem::take(&mut self.body.warnings);
+        let header_hz = self.body.rate_hz.or(self.rate_hz);
         warnings.extend(self.warnings);
         // Real stamps of numbered frames: their mean is surer than the median of what jitters.
         let numbered = matches!(
@@ -187,7 +200,7 @@ impl Draft {
         );
         let timing = self.body.timeline;
         let timing = timing
-            .finish(self.rate_hz, options.rate(), numbered)
+            .finish(header_hz, options.rate(), numbered)
             .map_err(|repeated| {
                 let line = lines::Line {
                     number: repeated.line,
@@ -312,6 +325,8 @@ fn read(bytes: impl Read, reading: &Reading<'_>) -> Result<Finished, TrackError>
         Detected::Vicon(delimiter) => vicon::read(&mut lines, reading, delimiter),
         Detected::Kinovea => kinovea::read(&mut lines, reading),
         Detected::Sleap(delimiter) => sleap::read(&mut lines, reading, delimiter),
+        Detected::Poses(delimiter) => pose_table::read(&mut lines, reading, delimiter),
+        Detected::Xml => xml::read(&mut lines, reading),
         Detected::Table(layout) => table::read(&mut lines, reading, &layout),
     }?;
     draft.finish(reading)

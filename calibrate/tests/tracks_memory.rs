@@ -3,7 +3,9 @@
 use std::io::Read;
 use std::path::Path;
 
-use calibrate::{TrackOptions, read_tracks_with, survey_tracks};
+use calibrate::{
+    PoseOptions, TrackFile, TrackOptions, UsedPoints, poses, read_tracks_with, survey_tracks,
+};
 
 /// A table of so many rows, made as it is read.
 #[allow(clippy::struct_field_names)] // the rows of a table of rows
@@ -106,6 +108,141 @@ fn memory_does_not_grow_with_the_length() {
     println!("peak {short} kB after 20 thousand rows, {long} kB after a million");
     // Kept, they would be 56 MB of places and times.
     assert!(long < short + 8 * 1024, "{short} kB, then {long} kB");
+}
+
+/// Motive export of the robot's two markers among those of other objects, generated while it is read.
+struct CrowdedExport {
+    next: usize,
+    rows: usize,
+    text: Vec<u8>,
+    at: usize,
+}
+
+/// Points other than Front and Back.
+const OTHERS: usize = 60;
+
+impl CrowdedExport {
+    fn new(rows: usize) -> Self {
+        let cells = |of: &dyn Fn(usize) -> String| -> String {
+            (0..OTHERS + 2)
+                .flat_map(|i| std::iter::repeat_n(of(i), 3))
+                .collect::<Vec<_>>()
+                .join(",")
+        };
+        let kind = |i: usize| {
+            if i % 3 == 2 {
+                "Rigid Body Marker"
+            } else {
+                "Marker"
+            }
+            .to_owned()
+        };
+        let name = |i: usize| match i {
+            0 => "robot:Front".to_owned(),
+            1 => "robot:Back".to_owned(),
+            i => format!("head:Marker{i}"),
+        };
+        let text = format!(
+            "Format Version,1.23,Take Name,a,Export Frame Rate,100.000000,Length Units,Meters,Coordinate Space,Global\n\n,Type,{}\n,Name,{}\n,ID,{}\n,,{}\nFrame,Time (Seconds),{}\n",
+            cells(&kind),
+            cells(&name),
+            cells(&|i| format!("A{i}")),
+            cells(&|_| "Position".to_owned()),
+            vec!["X,Y,Z"; OTHERS + 2].join(",")
+        );
+        Self {
+            next: 0,
+            rows,
+            text: text.into_bytes(),
+            at: 0,
+        }
+    }
+}
+
+impl Read for CrowdedExport {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        if self.at == self.text.len() && self.next < self.rows {
+            use std::io::Write as _;
+            self.text.clear();
+            self.at = 0;
+            let i = self.next;
+            let t = i as f64 / 100.0;
+            // 0.1 Hz: ten seconds a cycle, drifting by 5 mm a cycle.
+            let (x, theta) = (0.4 + 5e-4 * t, 0.4 * (0.628_318_53 * t).sin());
+            write!(self.text, "{i},{t:.6}")?;
+            let (s, c) = theta.sin_cos();
+            for along in [0.0355, -0.0355] {
+                write!(
+                    self.text,
+                    ",{:.6},0.050000,{:.6}",
+                    0.3 + along * s,
+                    x + along * c
+                )?;
+            }
+            for other in 0..OTHERS {
+                let angle = t + other as f64;
+                write!(
+                    self.text,
+                    ",{:.6},1.700000,{:.6}",
+                    3.0 + angle.sin(),
+                    2.0 + angle.cos()
+                )?;
+            }
+            self.text.push(b'\n');
+            self.next += 1;
+        }
+        let count = buffer.len().min(self.text.len() - self.at);
+        buffer[..count].copy_from_slice(&self.text[self.at..self.at + count]);
+        self.at += count;
+        Ok(count)
+    }
+}
+
+/// Only the positions of the named reflectors are kept.
+#[test]
+fn unused_positions_are_dropped_while_reading() {
+    let reflector = |name: &str, along| swimmer_files::Reflector {
+        point: swimmer_files::PointName::Named(name.to_owned()),
+        at: [along, 0.0],
+    };
+    let reflectors = swimmer_files::Reflectors {
+        front: reflector("Front", 0.0355),
+        back: reflector("Back", -0.0355),
+        body: None,
+        sides: None,
+    };
+    let read = |used| {
+        let options = TrackOptions {
+            used,
+            ..TrackOptions::default()
+        };
+        read_tracks_with(CrowdedExport::new(2000), Path::new("crowded.csv"), &options).unwrap()
+    };
+    let (all, few) = (read(None), read(Some(UsedPoints::of(&reflectors))));
+    let kept = |file: &TrackFile| {
+        file.points
+            .iter()
+            .filter(|point| point.position(1000).is_some())
+            .count()
+    };
+    assert_eq!((kept(&all), kept(&few)), (OTHERS + 2, 2));
+    // Every point is still counted.
+    assert!(few.points.iter().all(|point| point.present() == 2000));
+    let of = |file| {
+        poses(file, &reflectors, &PoseOptions::default())
+            .unwrap()
+            .samples
+    };
+    assert_eq!(of(&all), of(&few));
+}
+
+/// Writes a recording of 304 MB, to measure the command with: `CROWDED_EXPORT=FILE cargo test … --ignored crowded_export`.
+#[test]
+#[ignore = "a soak: writes 304 MB"]
+fn crowded_export() {
+    let path = std::env::var_os("CROWDED_EXPORT").unwrap();
+    let mut file = std::fs::File::create(path).unwrap();
+    std::io::copy(&mut CrowdedExport::new(181_000), &mut file).unwrap();
 }
 
 #[test]

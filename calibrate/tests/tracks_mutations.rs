@@ -395,7 +395,13 @@ fn frames_that_jump_or_do_not_grow() {
     );
     let file = read(&SAMPLE.replace("Export Frame Rate,100", "Export Frame Rate,120")).unwrap();
     assert!(
-        matches!(file.warnings[..], [TrackWarning::TimeColumn { .. }]),
+        matches!(
+            file.warnings[..],
+            [TrackWarning::TimeColumn {
+                column_used: true,
+                ..
+            }]
+        ) && (file.rate_hz - 100.0).abs() < 1e-9,
         "{:?}",
         file.warnings
     );

@@ -29,7 +29,7 @@ impl Recording {
             rate_hz: self.rate,
             axes: self.axes,
             likelihood: self.likelihood,
-            pairs: Vec::new(),
+            ..TrackOptions::default()
         }
     }
 

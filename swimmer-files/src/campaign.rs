@@ -1,5 +1,6 @@
 //! The campaign file: the runs of one experiment, and where the reflectors sit. Paths in it are relative to it.
 
+mod body;
 mod known;
 mod raw;
 mod read;
@@ -67,12 +68,50 @@ pub struct TrackSettings {
 /// The reflectors on the robot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reflectors {
-    /// The front one of the two on the middle link.
+    /// The front one of the two on the middle link; with a [`RigidBody`] a place on the link that it carries.
     pub front: Reflector,
-    /// The back one.
+    /// The back one, likewise.
     pub back: Reflector,
+    /// `body`: the rigid body that the tracking program made of the middle link, in place of two reflectors.
+    pub body: Option<RigidBody>,
     /// `front_link`, `back_link`: one on each side link, which show the joint angles.
     pub sides: Option<[Reflector; 2]>,
+}
+
+/// A rigid body of the tracking program (position and orientation) that is fixed to the middle link.
+///
+/// ```
+/// use swimmer_files::{Campaign, RigidBody};
+///
+/// let text = "swimmer = \"robot\"\n[reflectors]\nbody = \"Swimmer 1\"\n\
+///             [[run]]\ntrack = \"a.csv\"\ngait = \"circle:1\"\nperiod_s = 10.0\n";
+/// let campaign = Campaign::parse(text, "campaign.toml".as_ref())?;
+/// assert_eq!(campaign.reflectors.body, Some(RigidBody::named("Swimmer 1".to_owned())));
+/// # Ok::<(), swimmer_files::FileError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct RigidBody {
+    /// Its name in the tracking file.
+    pub name: String,
+    /// Place of its pivot on the middle link \[m\]: along it from its centre to the front, and to the left of it.
+    pub at: [f64; 2],
+    /// Axis of the body by which its heading is read: 0, 1, 2 for x, y, z, and −1 if it points backwards. `None` for the axis that
+    /// lies along the tank's x when the body is not turned.
+    pub axis: Option<(usize, f64)>,
+    /// Direction of the front link from that axis, counter-clockwise \[rad\].
+    pub heading_rad: f64,
+}
+
+impl RigidBody {
+    /// A body at the middle of the link, whose own axis shows the heading.
+    pub fn named(name: String) -> Self {
+        Self {
+            name,
+            at: [0.0; 2],
+            axis: None,
+            heading_rad: 0.0,
+        }
+    }
 }
 
 /// One reflector: what the tracking file calls it and where it sits.

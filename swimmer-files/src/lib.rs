@@ -52,8 +52,8 @@ pub use any_gait::AnyGait;
 pub use atomic::{stream_atomically, write_atomically};
 pub use axes::Axes;
 pub use campaign::{
-    Campaign, CampaignRun, Known, KnownValue, PointName, Reflector, Reflectors, RunTiming, ToldRun,
-    ToldValue, TrackSettings,
+    Campaign, CampaignRun, Known, KnownValue, PointName, Reflector, Reflectors, RigidBody,
+    RunTiming, ToldRun, ToldValue, TrackSettings,
 };
 pub use gait_file::{ArcKind, Bounds, GaitArc, GaitFile, Objective};
 pub use gait_spec::{GaitSpec, GaitSpecError};

@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use swimmer_files::{Axes, Campaign, FileError, GaitSpec, PointName, SwimmerFile, TrackSettings};
+use swimmer_files::{
+    Axes, Campaign, FileError, GaitSpec, PointName, RigidBody, SwimmerFile, TrackSettings,
+};
 
 const EXAMPLE: &str = r#"swimmer = "robot-slender"        # or a file
 [reflectors]
@@ -414,4 +416,52 @@ fn a_table_of_results() {
         .unwrap_err()
         .to_string();
     assert!(error.contains("campaign.toml:5:11"), "{error}");
+}
+
+#[test]
+fn a_rigid_body_in_place_of_two_reflectors() {
+    let text = "swimmer = \"robot\"\n[reflectors]\nbody = \"robot\"\n[[run]]\ntrack = \"a.csv\"\ngait = \"circle:1\"\nperiod_s = 10.0\n";
+    let read = |text: &str| Campaign::parse(text, Path::new("tank/campaign.toml"));
+    let reflectors = read(text).unwrap().reflectors;
+    assert_eq!(reflectors.body, Some(RigidBody::named("robot".into())));
+    // Its places on the link are the ends of the middle link.
+    let half = SwimmerFile::preset("robot").unwrap().swimmer.links.middle / 2.0;
+    assert_eq!(
+        [reflectors.front.at, reflectors.back.at],
+        [[half, 0.0], [-half, 0.0]]
+    );
+    let table = "{ name = \"b\", at = [0.01, -0.02], axis = \"-z\", heading_deg = 90.0 }";
+    let body = read(&text.replace("\"robot\"\n[[", &format!("{table}\n[[")));
+    let body = body.unwrap().reflectors.body.unwrap();
+    assert_eq!((body.at, body.axis), ([0.01, -0.02], Some((2, -1.0))));
+    assert!((body.heading_rad - std::f64::consts::FRAC_PI_2).abs() < 1e-15);
+    let bad = |with: &str| read(&text.replace("body = \"robot\"", with)).unwrap_err();
+    let end = "{ point = \"F\", at = [0.03, 0.0] }";
+    for (with, place, why) in [
+        ("body = \"\"".to_owned(), ":3:8", "name of a rigid body"),
+        (
+            format!("body = {}", table.replace("-z", "w")),
+            ":3:8",
+            "x, y, z",
+        ),
+        (
+            format!("body = {}", table.replace("90.0", "nan")),
+            ":3:8",
+            "finite",
+        ),
+        (
+            format!("body = {}", table.replace("axis", "axes")),
+            ":3:8",
+            "a body is a name",
+        ),
+        (
+            format!("body = \"robot\"\nfront = {end}"),
+            ":4:9",
+            "remove one of them",
+        ),
+        (format!("front = {end}"), ":3:9", "`front` and `back`"),
+    ] {
+        let error = bad(&with).to_string();
+        assert!(error.contains(place) && error.contains(why), "{error}");
+    }
 }

@@ -5,9 +5,11 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use calibrate::{PointKind, PoseOptions, PoseTrack, TrackFile, TrackPoint, poses, read_tracks};
+use calibrate::{
+    FrontRule, PointKind, PoseOptions, PoseTrack, TrackFile, TrackPoint, poses, read_tracks,
+};
 use nalgebra::Vector3;
-use swimmer_files::{PointName, Reflector, Reflectors};
+use swimmer_files::{PointName, Reflector, Reflectors, RigidBody};
 use swimmer_model::wrapped_angle;
 
 fn text(name: &str) -> String {
@@ -32,6 +34,7 @@ fn reflectors(front: &str, back: &str, distance: f64) -> Reflectors {
     Reflectors {
         front: reflector(front, distance / 2.0),
         back: reflector(back, -distance / 2.0),
+        body: None,
         sides: None,
     }
 }
@@ -238,6 +241,47 @@ fn anchors_b_and_c_two_markers_tell_the_heading_better_than_the_body() {
     println!("the body tilts by {tilt:.0} deg, its yaw is off in {yaw_off} frames");
     assert!((131.5..132.5).contains(&tilt), "{tilt}");
     assert_eq!(yaw_off, 78);
+}
+
+/// The pose of a rigid body is the tracking program's own, but for the frames in which its solver tipped it over.
+#[test]
+#[cfg_attr(
+    not(shared),
+    ignore = "needs the real recordings in ../shared/optitrack"
+)]
+fn a_body_has_the_heading_of_its_quaternion() {
+    let text = text("tt_v1.0_olin.csv");
+    let file = read(&text);
+    let reflectors = Reflectors {
+        body: Some(RigidBody::named("rbt".to_owned())),
+        ..reflectors("auto", "auto", 0.1)
+    };
+    let track = poses(&file, &reflectors, &PoseOptions::default()).unwrap();
+    assert_eq!(track.front, FrontRule::Body);
+    assert_eq!(track.plane.map, "(x, y) = (Z, X), normal Y");
+    let body = body_motion(&text);
+    let mut off: Vec<f64> = Vec::new();
+    for sample in track.seen() {
+        let there = body.iter().find(|b| (b.0 - sample.time_s).abs() < 1e-9);
+        let (_, heading, tilt, _) = there.unwrap();
+        assert!(*tilt < 20_f64.to_radians(), "{tilt}");
+        off.push(
+            wrapped_angle(sample.pose.theta - heading)
+                .abs()
+                .to_degrees(),
+        );
+    }
+    off.sort_by(f64::total_cmp);
+    let upright = body.iter().filter(|b| b.2 < 10_f64.to_radians()).count();
+    println!(
+        "{} poses of {}, {upright} upright, median {:.3} deg off, worst {:.3}",
+        off.len(),
+        body.len(),
+        off[off.len() / 2],
+        off[off.len() - 1]
+    );
+    assert!(off.len() >= upright.min(body.len() - 100) && off.len() < body.len());
+    assert!(off[off.len() / 2] < 0.1 && off[off.len() - 1] < 3.0);
 }
 
 /// D: thirteen reflectors under 313 numbers. Any two of the first frame are followed through all their numbers.

@@ -149,11 +149,10 @@ pub(super) fn judge(bins: &[Bin], period_s: f64, logged: bool) -> Judgement {
         found_s: other.map(|(found_s, _)| found_s),
     };
     match other {
-        Some((_, explained)) if explained > WELL && share < BADLY && !logged => {
-            Judgement::Hopeless(repeats)
-        }
+        // Another period fits, or this one does not: what is cut by it are no cycles.
+        Some((_, explained)) if explained > WELL && !logged => Judgement::Hopeless(repeats),
+        _ if share < BADLY && !logged => Judgement::Hopeless(repeats),
         Some((_, explained)) if explained > WELL || !logged => Judgement::Doubtful(repeats),
-        None if share < BADLY && !logged => Judgement::Doubtful(repeats),
         _ => Judgement::Fine,
     }
 }

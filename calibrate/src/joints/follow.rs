@@ -2,11 +2,11 @@
 //! what goes on from the last row counts for more.
 
 use nalgebra::Vector2;
-use swimmer_files::{PointName, Reflector, Reflectors};
+use swimmer_files::{Reflector, Reflectors};
 
 use swimmer_model::wrapped_angle;
 
-use crate::poses::{Origin, PoseSample, PoseTrack, is_called};
+use crate::poses::{Origin, PoseSample, PoseTrack};
 use crate::tracks::TrackFile;
 
 /// How far a point may be from the reflector's distance to the joint, as a share of it.
@@ -71,16 +71,8 @@ impl Side<'_> {
     /// The points of the pool that go by the reflector's name.
     fn named(&self, track: &TrackFile, pool: &[usize]) -> Vec<usize> {
         let is = |i: &&usize| {
-            let Some(point) = track.points.get(**i) else {
-                return false;
-            };
-            match &self.reflector.point {
-                PointName::Named(name) => is_called(point, name),
-                PointName::Columns(x, y) => {
-                    matches!(point.columns.as_slice(), [a, b, ..] if a == x && b == y)
-                }
-                PointName::Auto | PointName::Near(_) => false,
-            }
+            let point = track.points.get(**i);
+            point.is_some_and(|point| point.goes_by(&self.reflector.point))
         };
         pool.iter().filter(is).copied().collect()
     }

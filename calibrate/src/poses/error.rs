@@ -26,6 +26,35 @@ pub enum PoseError {
         /// The scale at which the reflectors' distance is right, where they can be told.
         scale: Option<f64>,
     },
+    /// No rigid body of this name has an orientation in the file.
+    #[error(
+        "the track has no rigid body called `{wanted}` with an orientation{}; change `body` in the campaign, export rotations too, or \
+         name two reflectors", if bodies.is_empty() { String::new() } else { format!("; those with one are {bodies}") }
+    )]
+    NoBody {
+        /// The name.
+        wanted: String,
+        /// The bodies that are there.
+        bodies: String,
+    },
+    /// The rigid body is never tracked.
+    #[error("the rigid body `{body}` is tracked in none of {frames} frames")]
+    BodyUnseen {
+        /// Its name.
+        body: String,
+        /// Rows of the file.
+        frames: usize,
+    },
+    /// The axis that is to show the heading is the normal of the plane.
+    #[error(
+        "the {axis} axis of the rigid body `{body}` stands upright on the tank's plane, so it shows no heading; name another `axis`"
+    )]
+    BodyAxis {
+        /// Its name.
+        body: String,
+        /// The axis.
+        axis: &'static str,
+    },
     /// Both reflectors are at the same place on the link.
     #[error("both reflectors sit at the same place of the link, so they show no heading")]
     SamePlace,
@@ -44,7 +73,8 @@ pub enum PoseError {
     },
     /// Front and back are one and the same point.
     #[error(
-        "front and back both name `{point}`: it is at no distance from itself; name another point for one of them in the campaign"
+        "front and back both name `{point}`: it is at no distance from itself; name another point for one of them, or, if it is a rigid \
+         body, write body = \"{point}\" in their place"
     )]
     SamePoint {
         /// The point's name.

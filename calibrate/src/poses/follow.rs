@@ -9,6 +9,7 @@
 
 mod frame_jump;
 mod identity;
+mod rigid;
 mod search;
 
 use nalgebra::{Vector2, Vector3};
@@ -18,7 +19,7 @@ use super::frozen::{Frozen, take_frozen};
 use super::{PoseError, PoseOptions};
 use crate::TrackFile;
 use frame_jump::{FrameJump, MOVED};
-pub(crate) use search::is_called;
+use identity::Settled;
 use search::{Candidate, REACH, Search, prepare};
 
 /// How following went.
@@ -124,6 +125,8 @@ pub(super) struct Followed<'a> {
     pub(super) frozen: Frozen,
     /// The share of rows whose labels contradict the others', where it is too large to say which are right.
     pub(super) contested: Option<f64>,
+    /// Rows in which a rigid body was tipped over.
+    pub(super) tipped: usize,
 }
 
 /// Smoothing time of the velocity \[s\].
@@ -195,10 +198,14 @@ pub(super) fn follow<'a>(
             scale,
         });
     }
+    if let Some(body) = &reflectors.body {
+        return rigid::follow(track, reflectors, body, expected_m);
+    }
     let mut search = prepare(track, reflectors, expected_m, options)?;
     // The first pass tells the distance, and how much it and predictions vary.
-    let (rows, _) = walk(&search);
+    let rows = walk(&search).0;
     search.learn(&rows);
+    drop(rows);
     let (rows, starts) = walk(&search);
     if rows.is_empty() {
         return Err(PoseError::NoPair {
@@ -209,7 +216,8 @@ pub(super) fn follow<'a>(
     }
     let has_name = |point: &PointName| !matches!(point, PointName::Auto | PointName::Near(_));
     let named = has_name(&reflectors.front.point) || has_name(&reflectors.back.point);
-    let mut followed = settle(search, rows, &starts, expected_m);
+    let settled = identity::settle(&search, rows, &starts);
+    let mut followed = settle(search, settled, starts.len(), expected_m);
     followed.order_known = named
         && followed.contested.is_none()
         && followed.rows.iter().any(|row| row.labels.is_some());
@@ -378,16 +386,10 @@ fn next(
     })
 }
 
-/// Says who is who in every segment, and counts.
-fn settle<'a>(
-    search: Search<'a>,
-    rows: Vec<Row>,
-    starts: &[usize],
-    expected_m: f64,
-) -> Followed<'a> {
+/// Counts what was followed in so many segments.
+fn settle(search: Search<'_>, settled: Settled, segments: usize, expected_m: f64) -> Followed<'_> {
     let frames = search.track.frames();
-    let told = identity::settle(&search, rows, starts);
-    let mut kept = told.rows;
+    let mut kept = settled.rows;
     let named = kept.iter().filter_map(|row| Some((row, row.labels?)));
     let swaps = Stretch::of(named.map(|(row, agrees)| (search.time(row), !agrees)));
     let frozen = take_frozen(&mut kept);
@@ -409,7 +411,7 @@ fn settle<'a>(
             swaps,
             ghosts_rejected: 0,
             ghosts: Vec::new(),
-            segments: starts.len(),
+            segments,
             distance_m,
             distance_sd_m: variance.sqrt(),
             expected_m,
@@ -417,9 +419,10 @@ fn settle<'a>(
         rows: kept,
         expected_m,
         order_known: false,
-        lost_segments: told.lost_segments,
-        lost_rows: told.lost_rows,
+        lost_segments: settled.lost_segments,
+        lost_rows: settled.lost_rows,
         frozen,
-        contested: told.contested,
+        contested: settled.contested,
+        tipped: 0,
     }
 }

@@ -35,6 +35,11 @@ pub enum PoseWarning {
         /// Rows in them.
         rows: usize,
     },
+    /// The rigid body was tipped over, as by a solver that lost a marker; those rows are left out.
+    Tipped {
+        /// Rows.
+        rows: usize,
+    },
     /// The pose jumps as no robot can.
     Jumps(Vec<Jump>),
     /// The names of front and back are exchanged for so much of the run that nobody can say which are the right ones.
@@ -73,6 +78,10 @@ impl fmt::Display for PoseWarning {
             Self::AmbiguousGaps { segments, rows } => write!(
                 f,
                 "{segments} stretches ({rows} rows) come after gaps too long to tell front from back; they are left out"
+            ),
+            Self::Tipped { rows } => write!(
+                f,
+                "the rigid body is tipped by more than 15° in {rows} rows, as by a solver that lost a marker; they count as missing"
             ),
             Self::Frozen { stretches, rows } => write!(
                 f,

@@ -109,6 +109,7 @@ fn parts_and_columns(
             columns.push(Columns {
                 axes: [None; 3],
                 likelihood: None,
+                rotation: None,
             });
         }
         let Some(last) = columns.last_mut() else {

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::cells::{Cell, split};
 use super::lines::{Delimiter, Line, Lines};
 use super::number::{Number, number};
-use super::{TrackError, TrackProblem, sleap};
+use super::{TrackError, TrackProblem, pose_table, sleap};
 
 /// A format that there is a reader for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,6 +30,10 @@ pub(super) enum Detected {
     Kinovea,
     /// SLEAP's analysis CSV.
     Sleap(Delimiter),
+    /// Rows of a time and a pose, without a header.
+    Poses(Delimiter),
+    /// Any XML.
+    Xml,
     /// A table with named columns.
     Table(TableLayout),
 }
@@ -63,8 +67,19 @@ pub(super) fn detect(lines: &Lines<'_>, file: &Path) -> Result<Detected, TrackEr
             file: file.to_owned(),
         });
     };
+    if first.text.trim_start().starts_with('<') {
+        return Ok(Detected::Xml);
+    }
     if first.text.starts_with("#Kinovea") {
         return Ok(Detected::Kinovea);
+    }
+    // Its first line may have spaces where the others have tabs, and any character in the name of the file.
+    if first
+        .text
+        .trim_start_matches('"')
+        .starts_with("PathFileType")
+    {
+        return Ok(Detected::Trc);
     }
     if sleap::is_header(&first, Delimiter::of(first.text), file) {
         return Ok(Detected::Sleap(Delimiter::of(first.text)));
@@ -108,7 +123,6 @@ fn by_first_lines(first: &Line<'_>, below: &[Line<'_>], file: &Path) -> Option<D
     let alone = cells.iter().skip(1).all(|cell| cell.raw.is_empty());
     Some(match word {
         "scorer" => Detected::DeepLabCut(delimiter),
-        "PathFileType" => Detected::Trc,
         "NO_OF_FRAMES" => Detected::Qtm,
         "Trajectories" | "Objects" | "Segments" if alone => {
             Detected::Vicon(Delimiter::of(below.get(1).map_or("", |line| line.text)))
@@ -123,6 +137,8 @@ fn by_first_lines(first: &Line<'_>, below: &[Line<'_>], file: &Path) -> Option<D
             let titles = split(second, delimiter_below, file).unwrap_or_default();
             if is_tracker(&cells, &titles) {
                 Detected::Tracker(delimiter_below)
+            } else if let Some(delimiter) = pose_table::delimiter(first, below, file) {
+                Detected::Poses(delimiter)
             } else if is_headerless(&cells, delimiter) {
                 Detected::Headerless(delimiter)
             } else {
@@ -201,17 +217,24 @@ fn table(lines: &Lines<'_>, first: &Line<'_>, file: &Path) -> Result<Detected, T
                 },
             ));
         }
-        let numbers = cells
-            .iter()
-            .filter(|cell| number(cell.raw, delimiter.allows_decimal_comma()) != Number::Wrong);
-        let is_data = cells.len() >= 2 && numbers.count() == cells.len();
+        let is_number =
+            |cell: &&Cell<'_>| number(cell.raw, delimiter.allows_decimal_comma()) != Number::Wrong;
+        let numbers = cells.iter().filter(is_number);
+        // ROS names frames of reference among its numbers, under as many titles.
+        let under_titles = |line: Line<'_>| {
+            let titles = split(&line, delimiter, file).map_or(0, |titles| titles.len());
+            titles == cells.len() && cells.first().is_some_and(|cell| is_number(&cell))
+        };
+        let is_data = cells.len() >= 2
+            && (numbers.count() == cells.len() || comment.is_some_and(under_titles));
         // `# t x1 y1`: the last comment line above the numbers is the header.
         let (header, delimiter) = match (is_data, comment) {
             (true, Some(comment)) => (comment, Delimiter::of(comment.text)),
             (true, None) => return Err(unrecognised()),
             (false, _) => (line, delimiter),
         };
-        if header.text.contains(['t', 'T', 'f', 'F'])
+        let unnamed = header.text.starts_with([',', ';', '\t']);
+        if (unnamed || header.text.contains(['t', 'T', 'f', 'F']))
             && header.text.split([',', ';', '\t', ' ']).count() >= 3
         {
             return Ok(Detected::Table(TableLayout {

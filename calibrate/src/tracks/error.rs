@@ -34,8 +34,7 @@ pub enum TrackError {
     },
     /// A format that is recognised, but that there is no reader for.
     #[error(
-        "{}: this is a `{format}` file, which is not read; export it as text: Motive CSV, TRC, QTM TSV, or a table with named \
-         columns such as t,x1,y1,x2,y2", file.display()
+        "{}: this is a `{format}` file, which is not read; export it as text: {}", file.display(), text_export(format)
     )]
     NotRead {
         /// The file.
@@ -55,8 +54,8 @@ pub enum TrackError {
     },
     /// Nothing that is known begins like this.
     #[error(
-        "{}:1:1: no known tracking format begins with `{beginning}`; read are CSV exports of Motive and Tracking Tools, Tracker, \
-         DeepLabCut, TRC, QTM and Vicon, and tables with named columns such as t,x1,y1,x2,y2", file.display()
+        "{}:1:1: no known tracking format begins with `{beginning}`; read are exports of Motive, Tracking Tools, Tracker, DeepLabCut, \
+         SLEAP, Kinovea, TrackMate, TRC, QTM and Vicon, and tables with named columns such as t,x1,y1,x2,y2", file.display()
     )]
     Unrecognised {
         /// The file.
@@ -70,6 +69,21 @@ pub enum TrackError {
         /// The file.
         file: PathBuf,
     },
+}
+
+/// How to get text instead of a binary format.
+fn text_export(format: &str) -> &'static str {
+    match format {
+        "hdf5" => {
+            "DeepLabCut writes CSV beside it (deeplabcut.analyze_videos with save_as_csv=True, or \
+             deeplabcut.analyze_videos_converth5_to_csv), SLEAP by sleap-convert --format analysis.csv"
+        }
+        "c3d" => {
+            "CSV from Motive (File, Export Tracking Data), TSV from QTM, CSV from Nexus, or TRC, which OpenSim and Mokka make of it"
+        }
+        "xlsx" => "save the sheet as CSV",
+        _ => "Motive CSV, TRC, QTM TSV, or a table with named columns such as t,x1,y1,x2,y2",
+    }
 }
 
 impl TrackError {
@@ -264,6 +278,41 @@ pub enum TrackProblem {
     RecordVersion {
         /// The version.
         version: String,
+    },
+    /// An angle without a unit that cannot be meant in radians.
+    #[error(
+        "{text} is more than a whole turn if it is in radians; name the unit in the column's title: yaw_deg, or yaw_rad for an angle \
+         that goes on counting"
+    )]
+    AngleUnit {
+        /// The cell's text.
+        text: String,
+    },
+    /// XML that no reader is for.
+    #[error(
+        "this is XML with the root `{root}`, which is not read; read are Kinovea's .kva, and TrackMate's files and exported tracks. Export \
+         a table with named columns such as t,x1,y1,x2,y2{}",
+        hint.map_or(String::new(), |hint| format!(" ({hint})"))
+    )]
+    UnknownXml {
+        /// The root element's name.
+        root: String,
+        /// Where its program exports text.
+        hint: Option<&'static str>,
+    },
+    /// XML that cannot be parsed.
+    #[error("this XML cannot be read: {cause}")]
+    BrokenXml {
+        /// The parser's reason.
+        cause: String,
+    },
+    /// An XML element without an attribute that it must have.
+    #[error("`{element}` has no number in `{attribute}`")]
+    NoAttribute {
+        /// The element.
+        element: String,
+        /// The attribute.
+        attribute: String,
     },
     /// Without a header, columns can only be taken three by three.
     #[error(

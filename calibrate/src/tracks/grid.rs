@@ -1,17 +1,25 @@
 //! Rows of a clock and positions under a header that has been read: what most formats are below their first lines, and the
 //! hot loop of reading.
 
+mod nearby;
 mod notes;
 
 use std::path::Path;
 
-use super::cells::Cells;
+use super::cells::{Cell, Cells};
 use super::lines::{Delimiter, Line, Lines};
 use super::number::{Decimals, Number};
+use super::rotation::Rotation;
 use super::rows::{TakesRows, read_rows};
+use super::stamp::{self, Stamp};
 use super::timeline::Timeline;
 use super::{Reading, TrackError, TrackPoint, TrackProblem, TrackWarning};
+use nearby::Nearby;
+pub(super) use notes::ColumnClock;
 use notes::Notes;
+
+/// Largest angle that passes for radians if nothing says the unit.
+pub(super) const LARGEST_ANGLE: f64 = 2.0 * std::f64::consts::PI + 1e-3;
 
 /// Where a row's time comes from.
 #[derive(Debug, Clone, Copy)]
@@ -41,6 +49,8 @@ pub(super) struct Columns {
     pub(super) axes: [Option<usize>; 3],
     /// How sure the tracker was.
     pub(super) likelihood: Option<usize>,
+    /// The body's orientation.
+    pub(super) rotation: Option<Rotation>,
 }
 
 impl Columns {
@@ -48,6 +58,7 @@ impl Columns {
         Self {
             axes: axes.map(Some),
             likelihood: None,
+            rotation: None,
         }
     }
 }
@@ -73,6 +84,8 @@ pub(super) struct Grid {
     pub(super) comments: bool,
     /// Whether a blank line ends the section (Vicon).
     pub(super) section: bool,
+    /// Whether nothing says the unit of angles, so that one beyond a whole turn is not taken for radians.
+    pub(super) short_angles: bool,
 }
 
 impl Grid {
@@ -95,6 +108,7 @@ impl Grid {
             origin_is_missing: false,
             comments: false,
             section: false,
+            short_angles: false,
         }
     }
 }
@@ -104,6 +118,8 @@ pub(super) struct Body {
     pub(super) timeline: Timeline,
     pub(super) points: Vec<TrackPoint>,
     pub(super) warnings: Vec<TrackWarning>,
+    /// The rate by the time column, if the header's is wrong.
+    pub(super) rate_hz: Option<f64>,
 }
 
 /// # Errors
@@ -114,29 +130,32 @@ pub(super) fn read(
     mut grid: Grid,
 ) -> Result<Body, TrackError> {
     let file = reading.file;
+    let used = reading.options.used.as_ref();
     for point in &mut grid.points {
-        point.keep_places(reading.keeps_places);
+        let needed = used.is_none_or(|used| used.may_need(point));
+        point.keep_places(reading.keeps_places && needed);
     }
+    let nearby = Nearby::new(used, &grid.points, grid.metres);
     let rate_is_given = reading.options.rate().is_some();
     let mut reader = Reader {
-        decimals: if grid.delimiter.allows_decimal_comma() {
-            Decimals::Open
-        } else {
-            Decimals::Point
-        },
+        decimals: Decimals::of(grid.delimiter),
         file,
         places: vec![None; grid.points.len()],
+        turns: vec![None; grid.points.len()],
         cells: Cells::default(),
         notes: Notes::default(),
         body: Body {
             timeline: Timeline::new(reading.keeps_places),
             points: Vec::new(),
             warnings: Vec::new(),
+            rate_hz: None,
         },
         stamps_from: None,
         rate_is_given,
         last_decimals: 0,
         extent: None,
+        first_day: None,
+        nearby: nearby.filter(|_| reading.keeps_places),
         grid,
     };
     let header_line = reader.grid.header_line;
@@ -151,6 +170,7 @@ struct Reader<'f> {
     decimals: Decimals,
     cells: Cells,
     places: Vec<Option<[f64; 3]>>,
+    turns: Vec<Option<[f64; 4]>>,
     notes: Notes,
     body: Body,
     /// Where frame numbers failed: a stamp and the time that was given to it. From there on stamps count.
@@ -159,6 +179,10 @@ struct Reader<'f> {
     rate_is_given: bool,
     last_decimals: usize,
     extent: Option<usize>,
+    /// The day of the first stamp that is a date.
+    first_day: Option<i64>,
+    /// Which places matter, if not all do.
+    nearby: Option<Nearby>,
 }
 
 impl TakesRows for Reader<'_> {
@@ -191,8 +215,12 @@ impl Reader<'_> {
         )?;
         let (frame, time) = self.clock(line)?;
         let mut places = std::mem::take(&mut self.places);
-        for (index, place) in places.iter_mut().enumerate() {
+        let mut turns = std::mem::take(&mut self.turns);
+        for (index, (place, turn)) in places.iter_mut().zip(&mut turns).enumerate() {
             *place = self.place(line, index)?;
+            if place.is_some() {
+                *turn = self.turn(line, index)?;
+            }
         }
         let decimals = decimals(self.cells.last(line).map_or("", |cell| cell.raw));
         let first = self.body.timeline.len() == 0;
@@ -205,12 +233,19 @@ impl Reader<'_> {
             self.notes.jumped(frame.saturating_sub(previous + 1));
         }
         self.body.timeline.push(frame, time);
-        for (point, place) in self.grid.points.iter_mut().zip(&places) {
-            if let Some(place) = place {
-                point.push(row, place.map(|value| value * self.grid.metres));
+        let keeps = self.nearby.as_mut().map(|nearby| nearby.keep(&places));
+        let cells = places.iter().zip(&turns).enumerate();
+        for (point, (index, (place, turn))) in self.grid.points.iter_mut().zip(cells) {
+            let Some(place) = place else { continue };
+            let place = place.map(|value| value * self.grid.metres);
+            let kept = keeps.is_none_or(|keeps| keeps.get(index).copied().unwrap_or(true));
+            if kept {
+                point.push_pose(row, place, *turn);
+            } else {
+                point.count(row);
             }
         }
-        self.places = places;
+        (self.places, self.turns) = (places, turns);
         Ok(())
     }
 
@@ -246,16 +281,15 @@ impl Reader<'_> {
                 frame,
             } => {
                 let cell = self.cells.at(line, time);
-                let Number::Finite(stamp) = self.decimals.number(cell.raw) else {
-                    let problem = TrackProblem::NotANumber {
-                        text: cell.text().into_owned(),
-                        cell: "time".to_owned(),
-                    };
-                    return Err(line.error(self.file, cell.at, problem));
+                let stamp = match self.decimals.number(cell.raw) {
+                    Number::Finite(stamp) => {
+                        self.body.timeline.written(cell.raw, seconds);
+                        stamp * seconds
+                    }
+                    _ => self.shown(line, &cell)?,
                 };
                 let number = frame.map_or(Ok(row), |column| self.frame(line, column))?;
-                self.body.timeline.written(cell.raw, seconds);
-                (number, stamp * seconds)
+                (number, stamp)
             }
         };
         if let Some((_, previous)) = self.body.timeline.last()
@@ -270,6 +304,20 @@ impl Reader<'_> {
             return Err(line.error(self.file, 0, problem));
         }
         Ok((frame, time))
+    }
+
+    /// A time as a clock shows it, in seconds from midnight of the first row's day.
+    fn shown(&mut self, line: &Line<'_>, cell: &Cell<'_>) -> Result<f64, TrackError> {
+        let Some(stamp) = Stamp::parse(cell.raw) else {
+            let problem = TrackProblem::NotANumber {
+                text: cell.text().into_owned(),
+                cell: "time".to_owned(),
+            };
+            return Err(line.error(self.file, cell.at, problem));
+        };
+        let day = *self.first_day.get_or_insert(stamp.day.unwrap_or(0));
+        self.body.timeline.written(stamp::digits(cell.raw), 1.0);
+        Ok(stamp.since(day))
     }
 
     /// That a frame number grows, or that at least its stamp does, after the one of the row before.
@@ -346,6 +394,31 @@ impl Reader<'_> {
         Ok((!(self.grid.origin_is_missing && at_origin)).then_some(place))
     }
 
+    /// The point's orientation, if its columns say one.
+    fn turn(&mut self, line: &Line<'_>, index: usize) -> Result<Option<[f64; 4]>, TrackError> {
+        let columns = self.grid.columns.get(index);
+        let Some(rotation) = columns.and_then(|columns| columns.rotation) else {
+            return Ok(None);
+        };
+        rotation.read(|column| {
+            let text = self.cells.text(line, column).unwrap_or("");
+            let value = match self.decimals.number(text) {
+                Number::Finite(value) => value,
+                Number::Missing => return Ok(None),
+                Number::Wrong => return Err(self.not_a_number(line, column, index, 4)),
+            };
+            if self.grid.short_angles
+                && let Rotation::Yaw(_, radians) = rotation
+                && (value * radians).abs() > LARGEST_ANGLE
+            {
+                let cell = self.cells.at(line, column);
+                let text = cell.text().into_owned();
+                return Err(line.error(self.file, cell.at, TrackProblem::AngleUnit { text }));
+            }
+            Ok(Some(value))
+        })
+    }
+
     fn not_a_number(
         &self,
         line: &Line<'_>,
@@ -357,7 +430,13 @@ impl Reader<'_> {
         let point = self.grid.points.get(index);
         let named = point.and_then(|point| point.columns.get(axis)).cloned();
         let name = named.unwrap_or_else(|| {
-            let what = ["Position X", "Position Y", "Position Z", "likelihood"];
+            let what = [
+                "Position X",
+                "Position Y",
+                "Position Z",
+                "likelihood",
+                "rotation",
+            ];
             let point = point.map_or("", |point| &point.name);
             format!("{point}, {}", what.get(axis).unwrap_or(&""))
         });
@@ -377,8 +456,14 @@ impl Reader<'_> {
             Clock::Numbered { rate_hz, .. } if !self.rate_is_given => Some(rate_hz),
             _ => None,
         };
-        self.notes
+        let column = self
+            .notes
             .tell(rate_hz, self.grid.likelihood, &mut self.body.warnings);
+        // Where frame numbers failed, the column is the clock already.
+        if let Some(clock) = column.filter(|_| self.stamps_from.is_none()) {
+            self.body.timeline.follow(&clock);
+            self.body.rate_hz = Some(clock.rate_hz);
+        }
         Body {
             points: self.grid.points,
             ..self.body

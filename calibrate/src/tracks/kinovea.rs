@@ -101,11 +101,19 @@ impl Sections<'_> {
             self.open = true;
         }
         if let Some((_, seen)) = self.tracks.last_mut() {
-            if let Some((previous, _)) = seen.last().copied().filter(|last| time <= last.0) {
+            if let Some(previous) = seen
+                .last()
+                .map(|last| last.time_s)
+                .filter(|last| time <= *last)
+            {
                 let problem = TrackProblem::TimeOrder { previous, time };
                 return Err(line.error(file, 0, problem));
             }
-            seen.push((time, place));
+            seen.push(Seen {
+                time_s: time,
+                place,
+                turn: None,
+            });
         }
         self.rows += 1;
         Ok(())

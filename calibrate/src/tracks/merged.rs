@@ -7,16 +7,25 @@ use super::{PointKind, TrackPoint};
 /// Times that differ by less than this share of the usual step are the same frame, written by two tracks.
 const SAME_FRAME: f64 = 0.25;
 
-/// When and where a track was.
-pub(super) type Seen = (f64, [f64; 3]);
+/// A track's pose at a time.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Seen {
+    pub(super) time_s: f64,
+    pub(super) place: [f64; 3],
+    /// Orientation (x, y, z, w), if the file gives it.
+    pub(super) turn: Option<[f64; 4]>,
+}
 
-/// Tracks by name; places in metres where `metres` is what a unit is.
+/// Tracks by name, each in the order of time; places in metres if a unit has `metres`.
 pub(super) fn merged(
     mut timeline: Timeline,
     tracks: Vec<(String, Vec<Seen>)>,
     metres: f64,
 ) -> Body {
-    let seen = |(_, seen): &(String, Vec<Seen>)| seen.iter().map(|(time, _)| *time).collect();
+    let seen = |(_, seen): &(String, Vec<Seen>)| {
+        let times = seen.iter().map(|seen| seen.time_s);
+        times.filter(|time| time.is_finite()).collect()
+    };
     let mut times: Vec<f64> = tracks.iter().flat_map::<Vec<f64>, _>(seen).collect();
     times.sort_by(f64::total_cmp);
     times.dedup();
@@ -41,9 +50,17 @@ pub(super) fn merged(
     }
     let points = tracks.into_iter().map(|(name, seen)| {
         let mut point = TrackPoint::new(name, PointKind::Marker, String::new(), Vec::new());
-        for (time, place) in seen {
-            let row = rows.partition_point(|row| *row <= time).saturating_sub(1);
-            point.push(row, place.map(|value| value * metres));
+        if seen.iter().any(|seen| seen.turn.is_some()) {
+            point = point.oriented();
+        }
+        for Seen {
+            time_s,
+            place,
+            turn,
+        } in seen.into_iter().filter(|seen| seen.time_s.is_finite())
+        {
+            let row = rows.partition_point(|row| *row <= time_s).saturating_sub(1);
+            point.push_pose(row, place.map(|value| value * metres), turn);
         }
         point.finish(rows.len());
         point
@@ -52,5 +69,6 @@ pub(super) fn merged(
         points: points.collect(),
         timeline,
         warnings: Vec::new(),
+        rate_hz: None,
     }
 }

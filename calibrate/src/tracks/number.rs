@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::cells::Cell;
-use super::lines::Line;
+use super::lines::{Delimiter, Line};
 use super::{TrackError, TrackProblem};
 
 /// What a cell that should hold a number says.
@@ -30,6 +30,15 @@ pub(super) enum Decimals {
 }
 
 impl Decimals {
+    /// Of a file whose cells this stands between.
+    pub(super) fn of(delimiter: Delimiter) -> Self {
+        if delimiter.allows_decimal_comma() {
+            Self::Open
+        } else {
+            Self::Point
+        }
+    }
+
     /// What a cell says; may settle the sign.
     pub(super) fn number(&mut self, text: &str) -> Number {
         if *self == Self::Point {

@@ -1,8 +1,8 @@
 //! What the user knows about a recording and the file does not say.
 
-use swimmer_files::Axes;
+use swimmer_files::{Axes, PointName, Reflectors};
 
-use super::{TrackError, TrackProblem, TrackWarning, Unit};
+use super::{TrackError, TrackPoint, TrackProblem, TrackWarning, Unit};
 use crate::tracks::lines::Line;
 use std::path::Path;
 
@@ -19,6 +19,87 @@ pub struct TrackOptions {
     pub likelihood: Option<f64>,
     /// Further points of a table by the names of their x and y columns; each is named `x,y`.
     pub pairs: Vec<[String; 2]>,
+    /// What the poses will be taken from: places of other points need not be kept. `None` keeps all.
+    pub used: Option<UsedPoints>,
+}
+
+/// The points that poses are taken from.
+///
+/// ```
+/// use calibrate::{TrackOptions, UsedPoints, read_tracks_with};
+///
+/// let mut text = "t,Front_x,Front_y,Back_x,Back_y,wall_x,wall_y\n".to_owned();
+/// for frame in 0..5 {
+///     text += &format!("{:.2},0.07,0.3,0.0,0.3,5.0,5.0\n", 0.01 * f64::from(frame));
+/// }
+/// let options = TrackOptions { used: Some(UsedPoints::usual(0.07)), ..TrackOptions::default() };
+/// let file = read_tracks_with(text.as_bytes(), "run.csv".as_ref(), &options)?;
+/// assert!(file.points[1].position(3).is_some());
+/// // What is far from both is counted, and not kept.
+/// assert_eq!((file.points[2].present(), file.points[2].position(3)), (5, None));
+/// # Ok::<(), calibrate::TrackError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct UsedPoints {
+    /// Names of the reflectors on the middle link, or of the rigid body alone.
+    pub middle: Vec<PointName>,
+    /// Whether the middle link is a rigid body.
+    pub is_body: bool,
+    /// Whether the names are only the usual ones, so that other points are needed if they are missing.
+    pub is_guess: bool,
+    /// Names of the reflectors on the side links.
+    pub sides: Vec<PointName>,
+    /// How far apart the reflectors on the middle link are \[m\].
+    pub distance_m: f64,
+}
+
+impl UsedPoints {
+    /// The points of these reflectors.
+    pub fn of(reflectors: &Reflectors) -> Self {
+        let [front, back] = [&reflectors.front, &reflectors.back];
+        let middle = match &reflectors.body {
+            Some(body) => vec![PointName::Named(body.name.clone())],
+            None => vec![front.point.clone(), back.point.clone()],
+        };
+        let sides = reflectors.sides.iter().flatten();
+        Self {
+            middle,
+            is_body: reflectors.body.is_some(),
+            is_guess: false,
+            sides: sides.map(|side| side.point.clone()).collect(),
+            distance_m: (front.at[0] - back.at[0]).hypot(front.at[1] - back.at[1]),
+        }
+    }
+
+    /// The usual names of two reflectors so far apart \[m\].
+    pub fn usual(distance_m: f64) -> Self {
+        let named = |name: &str| PointName::Named(name.to_owned());
+        Self {
+            middle: vec![named("Front"), named("Back")],
+            is_body: false,
+            is_guess: true,
+            sides: Vec::new(),
+            distance_m,
+        }
+    }
+
+    /// Whether the point goes by one of the names.
+    pub(super) fn names(&self, point: &TrackPoint) -> bool {
+        let mut names = self.middle.iter().chain(&self.sides);
+        names.any(|name| point.goes_by(name))
+    }
+
+    /// Whether the point's places may be needed at all.
+    pub(super) fn may_need(&self, point: &TrackPoint) -> bool {
+        let measured = point.kind.is_measured() && !(self.is_body && self.sides.is_empty());
+        self.names(point) || measured || (self.is_guess && point.is_oriented())
+    }
+
+    /// Whether each of these points is there, so that others matter only close to them.
+    pub(super) fn are_in(&self, points: &[TrackPoint]) -> bool {
+        let mut names = self.middle.iter().chain(&self.sides);
+        names.all(|name| points.iter().any(|point| point.goes_by(name)))
+    }
 }
 
 impl TrackOptions {

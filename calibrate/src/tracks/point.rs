@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use nalgebra::Vector3;
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use swimmer_files::PointName;
 
 /// What a group of columns is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -68,11 +69,15 @@ pub struct TrackPoint {
     pub columns: Vec<String>,
     /// Whether places are kept, or only counted.
     keeps: bool,
+    /// Whether the file gives its orientation.
+    oriented: bool,
     presence: Presence,
     /// First row and first place of each run of rows in which it is there. Markers come and go: what is missing costs nothing.
     runs: Vec<(usize, usize)>,
     /// The places of all runs \[m\].
     places: Vec<[f64; 3]>,
+    /// The orientations of all runs (x, y, z, w), if the file gives any; NaN if a row has none.
+    turns: Vec<[f64; 4]>,
 }
 
 /// In which rows a point was, counted as they go by.
@@ -102,10 +107,41 @@ impl TrackPoint {
             id,
             columns,
             keeps: true,
+            oriented: false,
             presence: Presence::default(),
             runs: Vec::new(),
             places: Vec::new(),
+            turns: Vec::new(),
         }
+    }
+
+    /// The same point with orientations.
+    pub(super) fn oriented(mut self) -> Self {
+        self.oriented = true;
+        self
+    }
+
+    /// Whether the file gives the point's orientation.
+    pub fn is_oriented(&self) -> bool {
+        self.oriented
+    }
+
+    /// Whether this is one of the names by which the user may call the point: its own, the part behind an asset's name and a colon,
+    /// or its columns.
+    pub(crate) fn goes_by(&self, name: &PointName) -> bool {
+        match name {
+            PointName::Named(name) => self.is_called(name),
+            PointName::Columns(x, y) => {
+                matches!(self.columns.as_slice(), [a, b, ..] if a == x && b == y)
+            }
+            PointName::Auto | PointName::Near(_) => false,
+        }
+    }
+
+    /// Whether the point goes by this name: its own, or the part behind an asset's name and a colon.
+    pub(crate) fn is_called(&self, name: &str) -> bool {
+        let asset = self.name.rsplit_once(':');
+        self.name == name || asset.is_some_and(|(_, last)| last == name)
     }
 
     /// Before the first place: whether places are kept, or only counted.
@@ -115,11 +151,24 @@ impl TrackPoint {
 
     /// Where the point was in this row \[m\], in the file's own axes; `None` where it is missing.
     pub fn position(&self, row: usize) -> Option<Vector3<f64>> {
+        let place = self.index(row)?;
+        self.places.get(place).copied().map(Vector3::from)
+    }
+
+    /// The point's orientation in this row, in the file's own axes: turns vectors of the body into the file's frame. `None` if the
+    /// point or its orientation is missing.
+    pub fn orientation(&self, row: usize) -> Option<UnitQuaternion<f64>> {
+        let [x, y, z, w] = self.turns.get(self.index(row)?).copied()?;
+        UnitQuaternion::try_new(Quaternion::new(w, x, y, z), 1e-6)
+    }
+
+    /// The index among the kept places of this row's.
+    fn index(&self, row: usize) -> Option<usize> {
         let index = self.runs.partition_point(|(start, _)| *start <= row);
         let (start, first) = *self.runs.get(index.checked_sub(1)?)?;
         let place = first + (row - start);
         let end = self.runs.get(index).map_or(self.places.len(), |run| run.1);
-        (place < end).then(|| self.places.get(place).copied().map(Vector3::from))?
+        (place < end).then_some(place)
     }
 
     /// In how many rows it is there.
@@ -139,14 +188,34 @@ impl TrackPoint {
 
     /// It was there in this row; rows come in order, and the first place in a row holds.
     pub(super) fn push(&mut self, row: usize, place: [f64; 3]) {
+        self.push_pose(row, place, None);
+    }
+
+    /// The same with its orientation (x, y, z, w).
+    pub(super) fn push_pose(&mut self, row: usize, place: [f64; 3], turn: Option<[f64; 4]>) {
         if row < self.presence.next {
             return;
         }
         if self.keeps {
-            if row > self.presence.next || self.runs.is_empty() {
+            let next = self
+                .runs
+                .last()
+                .map(|(start, first)| start + self.places.len() - first);
+            if next != Some(row) {
                 self.runs.push((row, self.places.len()));
             }
             self.places.push(place);
+            if self.oriented {
+                self.turns.push(turn.unwrap_or([f64::NAN; 4]));
+            }
+        }
+        self.count(row);
+    }
+
+    /// Counts a row in which the point is there, without keeping its place.
+    pub(super) fn count(&mut self, row: usize) {
+        if row < self.presence.next {
+            return;
         }
         self.presence.missing_until(row);
         self.presence.present += 1;
@@ -163,6 +232,16 @@ impl TrackPoint {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn names_may_stand_behind_an_asset() {
+        let point = |name: &str| {
+            let name = name.to_owned();
+            TrackPoint::new(name, PointKind::Marker, String::new(), Vec::new())
+        };
+        assert!(point("Front").is_called("Front") && point("robot:Front").is_called("Front"));
+        assert!(!point("Front2").is_called("Front") && !point("Front").is_called("robot:Front"));
+    }
 
     #[test]
     fn runs_and_gaps() {

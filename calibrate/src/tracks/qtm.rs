@@ -1,4 +1,5 @@
-//! Qualisys Track Manager's TSV: `KEY<tab>value` lines, a row of column names (which the export may leave out), millimetres.
+//! Qualisys Track Manager's TSV: `KEY<tab>value` lines, a row of column names (which the export may leave out), millimetres; of
+//! markers (3D) or of rigid bodies (6D).
 
 use std::path::Path;
 
@@ -6,6 +7,7 @@ use super::cells::{Cell, cell_at, split};
 use super::grid::{self, Clock, Columns, Grid};
 use super::lines::{Delimiter, Line, Lines};
 use super::number;
+use super::rotation::Rotation;
 use super::{
     Draft, PointKind, Reading, TrackError, TrackFormat, TrackPoint, TrackProblem, TrackWarning,
     Unit,
@@ -38,7 +40,8 @@ pub(super) fn read(lines: &mut Lines<'_>, reading: &Reading<'_>) -> Result<Draft
     let (line, cells) = find("FREQUENCY")?;
     let rate = cell_at(cells, 1);
     let (rate_hz, other_rate) = options.rate_over(number::rate(&rate, line, file, true)?);
-    let (names_line, names) = find("MARKER_NAMES")?;
+    let bodies = find("BODY_NAMES").is_ok();
+    let (names_line, names) = find(if bodies { "BODY_NAMES" } else { "MARKER_NAMES" })?;
     let names: Vec<String> = names
         .iter()
         .skip(1)
@@ -51,10 +54,18 @@ pub(super) fn read(lines: &mut Lines<'_>, reading: &Reading<'_>) -> Result<Draft
     let titles = head.last().filter(|(_, cells)| {
         cells
             .iter()
-            .any(|cell| names.iter().any(|name| cell.raw == format!("{name} X")))
+            .any(|cell| names.iter().any(|name| cell.raw == format!("{name} X")) || cell.is("X"))
     });
-    let (frame, time, columns) = columns(titles, &names, file)?;
-    let used = columns.iter().flat_map(|columns| columns.axes).flatten();
+    let (frame, time, columns) = if bodies {
+        of_bodies(titles, &names, file)?
+    } else {
+        columns(titles, &names, file)?
+    };
+    let used = columns.iter().flat_map(|columns| {
+        let rotation = columns.rotation.as_ref().map_or(&[][..], Rotation::columns);
+        let axes = columns.axes.into_iter().flatten();
+        axes.chain(rotation.iter().copied())
+    });
     let width = used.max().map_or(0, |last| last + 1);
     let total = find("NO_OF_FRAMES")
         .ok()
@@ -62,8 +73,13 @@ pub(super) fn read(lines: &mut Lines<'_>, reading: &Reading<'_>) -> Result<Draft
     let points = names
         .into_iter()
         .map(|name| {
-            let kind = PointKind::of_marker(&name);
-            TrackPoint::new(name, kind, String::new(), Vec::new())
+            let kind = if bodies {
+                PointKind::RigidBody
+            } else {
+                PointKind::of_marker(&name)
+            };
+            let point = TrackPoint::new(name, kind, String::new(), Vec::new());
+            if bodies { point.oriented() } else { point }
         })
         .collect();
     let (unit, metres, overridden) = options.unit(Unit::Millimetre);
@@ -123,4 +139,70 @@ fn columns(
         columns.push(Columns::of(axes));
     }
     Ok((column("Frame"), column("Time"), columns))
+}
+
+/// Titles of a body's columns, of which the position and the matrix are read.
+const BODY: [&str; 16] = [
+    "X", "Y", "Z", "Roll", "Pitch", "Yaw", "Residual", "Rot[0]", "Rot[1]", "Rot[2]", "Rot[3]",
+    "Rot[4]", "Rot[5]", "Rot[6]", "Rot[7]", "Rot[8]",
+];
+/// Where the matrix begins among them.
+const MATRIX: usize = 7;
+
+/// Columns of rigid bodies, which stand one after the other: the title of the first column begins with the body's name, or not.
+fn of_bodies(
+    titles: Option<&(Line<'_>, Vec<Cell<'_>>)>,
+    names: &[String],
+    file: &Path,
+) -> Result<Places, TrackError> {
+    let mut columns = Vec::with_capacity(names.len());
+    let mut from = 0;
+    for name in names {
+        let mut of_body = [0; BODY.len()];
+        for (place, title) in of_body.iter_mut().zip(BODY) {
+            *place = match titles {
+                None => from,
+                Some((line, cells)) => {
+                    let is = |cell: &Cell<'_>| {
+                        cell.is(title)
+                            || cell
+                                .raw
+                                .strip_prefix(name.as_str())
+                                .is_some_and(|rest| rest.trim() == title)
+                    };
+                    let rest = cells.iter().enumerate().skip(from);
+                    let found = rest.into_iter().find(|(_, cell)| is(cell));
+                    found.map(|(column, _)| column).ok_or_else(|| {
+                        let (name, cell) = (name.clone(), title.to_owned());
+                        line.error(
+                            file,
+                            0,
+                            TrackProblem::NoColumn {
+                                name: format!("{name} {cell}"),
+                                columns: titles_of(cells),
+                            },
+                        )
+                    })?
+                }
+            };
+            from = *place + 1;
+        }
+        let [x, y, z, ..] = of_body;
+        let mut matrix = [0; 9];
+        for (column, place) in matrix.iter_mut().zip(of_body.iter().skip(MATRIX)) {
+            *column = *place;
+        }
+        columns.push(Columns {
+            rotation: Some(Rotation::Matrix(matrix)),
+            ..Columns::of([x, y, z])
+        });
+    }
+    let column =
+        |title: &str| titles.and_then(|(_, cells)| cells.iter().position(|cell| cell.raw == title));
+    Ok((column("Frame"), column("Time"), columns))
+}
+
+fn titles_of(cells: &[Cell<'_>]) -> String {
+    let titles: Vec<&str> = cells.iter().map(|cell| cell.raw).collect();
+    titles.join(", ")
 }

@@ -6,6 +6,7 @@
 //! sight of the body, so they count only while it is tracked. Markers of a frame have no identity in version 1.0 (their order
 //! changes from frame to frame): they are listed by their place in the list, and following ignores those names.
 
+mod body;
 mod record;
 
 use std::collections::HashMap;
@@ -19,8 +20,9 @@ use super::rows::{TakesRows, read_rows};
 use super::timeline::Timeline;
 use super::{
     Draft, PointKind, Reading, TrackError, TrackFormat, TrackPoint, TrackProblem, TrackWarning,
-    Unit,
+    Unit, UsedPoints,
 };
+use body::{FramePose, RigidBody, Seen, owners};
 use record::{Place, Record};
 
 /// Markers that a frame, or bodies that a file may have; more is a broken count.
@@ -35,7 +37,7 @@ pub(super) fn read(
 ) -> Result<Draft, TrackError> {
     let Reading { file, options, .. } = *reading;
     let (unit, metres, overridden) = options.unit(Unit::Metre);
-    let mut reader = Reader::new(metres, reading.keeps_places);
+    let mut reader = Reader::new(metres, reading.keeps_places, options.used.clone());
     reader.warnings.extend(overridden);
     let mut taker = Records {
         reader,
@@ -68,13 +70,6 @@ impl TakesRows for Records<'_> {
     }
 }
 
-/// A rigid body and the points that tell of it.
-struct RigidBody {
-    pivot: usize,
-    solved: Vec<usize>,
-    measured: Vec<usize>,
-}
-
 struct Reader {
     metres: f64,
     /// Fields of a frame's marker and of a solved one: 4 and 3 in version 1.0, 5 and 4 in 1.1.
@@ -84,10 +79,19 @@ struct Reader {
     frames: Option<u64>,
     timeline: Timeline,
     keeps_places: bool,
+    /// What poses will be taken from, if that is known.
+    used: Option<UsedPoints>,
     /// Frames that are not in the file: how often, how many.
     skipped: (usize, u64),
     points: Vec<TrackPoint>,
-    bodies: HashMap<String, RigidBody>,
+    bodies: Vec<RigidBody>,
+    /// Poses of the frame whose records are being read, and what these say of the bodies' markers.
+    poses: Vec<FramePose>,
+    seen: Seen,
+    /// Poses that went to a body of another number, and poses that no body's markers explain.
+    renumbered: (usize, usize),
+    /// Whether no body was defined before the first frame.
+    undefined: bool,
     /// Points of a frame's markers: by place in the list (1.0) or by number (1.1).
     markers: HashMap<String, usize>,
     half_blank: Option<(usize, usize)>,
@@ -95,7 +99,7 @@ struct Reader {
 }
 
 impl Reader {
-    fn new(metres: f64, keeps_places: bool) -> Self {
+    fn new(metres: f64, keeps_places: bool, used: Option<UsedPoints>) -> Self {
         Self {
             metres,
             strides: (4, 3),
@@ -104,9 +108,14 @@ impl Reader {
             frames: None,
             timeline: Timeline::new(keeps_places),
             keeps_places,
+            used,
             skipped: (0, 0),
             points: Vec::new(),
-            bodies: HashMap::new(),
+            bodies: Vec::new(),
+            poses: Vec::new(),
+            seen: Seen::default(),
+            renumbered: (0, 0),
+            undefined: false,
             markers: HashMap::new(),
             half_blank: None,
             warnings: Vec::new(),
@@ -151,15 +160,25 @@ impl Reader {
         record.expect(4 + 3 * markers)?;
         let name = record.cell(1).text().into_owned();
         let id = record.cell(2).raw.to_owned();
-        self.body(&name, &id, markers);
+        let mut offsets = Vec::with_capacity(markers);
+        for marker in 0..markers {
+            if let Place::Seen(offset) = record.place(4 + 3 * marker)? {
+                offsets.push(offset);
+            }
+        }
+        self.body((&name, &id), markers, &offsets);
         Ok(())
     }
 
-    fn body(&mut self, name: &str, id: &str, markers: usize) {
-        let keeps_places = self.keeps_places;
+    fn body(&mut self, (name, id): (&str, &str), markers: usize, offsets: &[[f64; 3]]) {
+        let (keeps_places, used) = (self.keeps_places, self.used.as_ref());
         let mut add = |name: String, kind, id: &str| {
             let mut point = TrackPoint::new(name, kind, id.to_owned(), Vec::new());
-            point.keep_places(keeps_places);
+            if kind == PointKind::RigidBody {
+                point = point.oriented();
+            }
+            let needed = used.is_none_or(|used| used.may_need(&point));
+            point.keep_places(keeps_places && needed);
             self.points.push(point);
             self.points.len() - 1
         };
@@ -171,14 +190,43 @@ impl Reader {
         let measured = (1..=markers)
             .map(|number| add(called(number), PointKind::Marker, id))
             .collect();
-        self.bodies.insert(
-            id.to_owned(),
-            RigidBody {
-                pivot,
-                solved,
-                measured,
-            },
-        );
+        self.bodies.push(RigidBody::new(
+            (name, id),
+            pivot,
+            (solved, measured),
+            offsets,
+        ));
+    }
+
+    /// Gives the last frame's poses to their bodies.
+    fn settle_poses(&mut self) {
+        let poses = std::mem::take(&mut self.poses);
+        let seen = std::mem::take(&mut self.seen);
+        let owners = owners(&poses, &self.bodies, &seen);
+        let Some(row) = self.timeline.len().checked_sub(1) else {
+            return;
+        };
+        for (pose, owner) in poses.into_iter().zip(owners) {
+            let Some(body) = owner.and_then(|owner| self.bodies.get(owner)) else {
+                self.renumbered.1 += 1;
+                continue;
+            };
+            self.renumbered.0 += usize::from(body.id != pose.id);
+            let pivot = body.pivot;
+            let (place, turn) = (pose.place.map(|value| value * self.metres), pose.turn);
+            if let Some(point) = self.points.get_mut(pivot) {
+                let ([x, y, z], mirrored) = (place, self.left_handed);
+                let place = [x, y, if mirrored { -z } else { z }];
+                let turn = turn.map(|[x, y, z, w]| {
+                    if mirrored {
+                        [-x, -y, z, w]
+                    } else {
+                        [x, y, z, w]
+                    }
+                });
+                point.push_pose(row, place, turn);
+            }
+        }
     }
 
     /// index, time, bodies, bodies × (id, x, y, z, quaternion, Euler angles), markers, markers × (x, y, z, id[, name])
@@ -200,16 +248,22 @@ impl Reader {
                 return Err(record.error(2, TrackProblem::TimeOrder { previous, time }));
             }
         }
-        let mut seen: Vec<(usize, [f64; 3])> = Vec::with_capacity(bodies + markers);
+        self.settle_poses();
+        if self.timeline.len() == 0 {
+            self.undefined = self.bodies.is_empty();
+        }
+        let mut poses = Vec::with_capacity(bodies);
+        let mut seen: Vec<(usize, [f64; 3])> = Vec::with_capacity(markers);
         for body in 0..bodies {
             let at = 4 + 11 * body;
             let id = record.cell(at).raw.to_owned();
-            if !self.bodies.contains_key(&id) {
-                self.body(&format!("body {id}"), &id, 0);
+            // Without any definition there is nothing but the number.
+            if self.undefined && !self.bodies.iter().any(|body| body.id == id) {
+                self.body((&format!("body {id}"), &id), 0, &[]);
             }
-            let pivot = self.bodies.get(&id).map(|body| body.pivot);
-            if let (Some(pivot), Some(place)) = (pivot, self.place(record, at + 1)?) {
-                seen.push((pivot, place));
+            if let Some(place) = self.place(record, at + 1)? {
+                let turn = record.turn(at + 4)?;
+                poses.push(FramePose { id, place, turn });
             }
         }
         for marker in 0..markers {
@@ -229,6 +283,7 @@ impl Reader {
         }
         self.timeline.push(frame, time);
         self.push(row, &seen);
+        self.poses = poses;
         Ok(())
     }
 
@@ -283,14 +338,24 @@ impl Reader {
             let frame = number;
             return Err(record.error(1, TrackProblem::FrameOrder { previous, frame }));
         }
-        let known = self.bodies.get(&id).map(|body| body.measured.len());
-        if known.is_none_or(|known| known < markers) {
-            let name = record.cell(3).text().into_owned();
-            self.body(&name, &id, markers);
-        }
+        let name = record.cell(3).text().into_owned();
+        let known = |body: &RigidBody| body.measured.len() >= markers;
+        let bodies = || {
+            self.bodies
+                .iter()
+                .enumerate()
+                .filter(|(_, body)| known(body))
+        };
+        let by_name = bodies().find(|(_, body)| body.name == name);
+        let found = by_name.or_else(|| bodies().find(|(_, body)| body.id == id));
+        let index = found.map(|(index, _)| index).unwrap_or_else(|| {
+            self.body((&name, &id), markers, &[]);
+            self.bodies.len() - 1
+        });
         let mut seen = Vec::with_capacity(2 * markers);
+        let mut tracked = Vec::with_capacity(markers);
         for marker in 0..markers {
-            let Some(body) = self.bodies.get(&id) else {
+            let Some(body) = self.bodies.get(index) else {
                 break;
             };
             let (solved, measured) = (
@@ -301,6 +366,7 @@ impl Reader {
                 (solved, self.place(record, 7 + stride * marker)?, since)
             {
                 seen.push((point, place));
+                tracked.push(place);
             }
             if let (Some(point), Some(place)) =
                 (measured, self.place(record, cloud_at + 3 * marker)?)
@@ -309,6 +375,7 @@ impl Reader {
             }
         }
         self.push(self.timeline.len() - 1, &seen);
+        self.seen.add(index, &tracked);
         Ok(())
     }
 
@@ -322,9 +389,17 @@ impl Reader {
     }
 
     fn finish(mut self, unit: Unit) -> Draft {
+        self.settle_poses();
         let rows = self.timeline.len();
         for point in &mut self.points {
             point.finish(rows);
+        }
+        if self.renumbered != (0, 0) {
+            let (renumbered, left_out) = self.renumbered;
+            self.warnings.push(TrackWarning::BodyNumbers {
+                renumbered,
+                left_out,
+            });
         }
         if self.left_handed {
             self.warnings.push(TrackWarning::LeftHanded);
@@ -352,6 +427,7 @@ impl Reader {
                 timeline: self.timeline,
                 points: self.points,
                 warnings: Vec::new(),
+                rate_hz: None,
             },
             warnings: self.warnings,
         }

@@ -64,11 +64,7 @@ pub(super) fn read(
     let mut instances = Instances {
         reading: *reading,
         delimiter,
-        decimals: if delimiter.allows_decimal_comma() {
-            Decimals::Open
-        } else {
-            Decimals::Point
-        },
+        decimals: Decimals::of(delimiter),
         width: cells.len(),
         frame,
         track: find("track"),
@@ -114,6 +110,7 @@ pub(super) fn read(
             timeline: instances.timeline,
             points: instances.points,
             warnings: Vec::new(),
+            rate_hz: None,
         },
         warnings,
     })

@@ -43,6 +43,8 @@ pub struct PointPresence {
     pub gaps: usize,
     /// The longest of them.
     pub longest_gap: usize,
+    /// Whether the file gives its orientation, so that it can be the `body` of a campaign.
+    pub oriented: bool,
 }
 
 fn in_words<S: Serializer>(value: &impl Display, serializer: S) -> Result<S::Ok, S::Error> {
@@ -65,6 +67,7 @@ impl TrackSurvey {
     pub(super) fn of(file: TrackFile, frames: usize) -> Self {
         let points = file.points.into_iter().map(|point| PointPresence {
             present: point.present(),
+            oriented: point.is_oriented(),
             gaps: point.gaps(),
             longest_gap: point.longest_gap(),
             name: point.name,

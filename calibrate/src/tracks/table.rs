@@ -8,6 +8,8 @@
 //! * Blank or NaN is missing. Columns that belong to nothing are not read.
 
 mod header;
+mod long;
+mod rotations;
 
 use super::detect::TableLayout;
 use super::grid::{self, Clock, Grid};
@@ -29,7 +31,14 @@ pub(super) fn read(
             file: file.to_owned(),
         });
     };
-    let header = Header::read(line, file, layout, options)?;
+    let first_row = lines
+        .head()
+        .filter(|line| !line.text.trim_start().starts_with(['#', '%']) && !line.is_blank())
+        .find(|line| line.number > at);
+    let header = Header::read(line, first_row, (file, layout), options)?;
+    if let Some(id) = header.id {
+        return long::read(lines, reading, layout, (header, id));
+    }
     // Kinovea writes pixels, or what its user calibrated.
     let unsaid = if header.kinovea {
         Unit::Unknown
@@ -52,6 +61,7 @@ pub(super) fn read(
         metres,
         columns: header.columns,
         comments: true,
+        short_angles: header.short_angles,
         ..Grid::under(at, layout.delimiter, header.width, header.points)
     };
     let body = grid::read(lines, reading, grid)?;

@@ -7,6 +7,7 @@
 use std::collections::HashMap;
 
 use super::TrackWarning;
+use super::grid::ColumnClock;
 
 /// Digits behind the decimal sign from which on rounding matters to nobody.
 const FINE: usize = 4;
@@ -140,6 +141,13 @@ impl Timeline {
         if self.keeps {
             self.frames.push(frame);
             self.times.push(time);
+        }
+    }
+
+    /// Puts the kept times on this clock.
+    pub(super) fn follow(&mut self, clock: &ColumnClock) {
+        for (time, frame) in self.times.iter_mut().zip(&self.frames) {
+            *time = clock.time_s + (*frame as f64 - clock.frame as f64) / clock.rate_hz;
         }
     }
 

@@ -80,8 +80,8 @@ fn body(timeline: Timeline, tracks: Vec<Track>, metres: f64, together: bool) -> 
     }
     let points = tracks.into_iter().map(|track| {
         let mut point = TrackPoint::new(track.name, PointKind::Marker, String::new(), Vec::new());
-        for (row, (_, place)) in track.seen {
-            point.push(row, place.map(|value| value * metres));
+        for (row, seen) in track.seen {
+            point.push(row, seen.place.map(|value| value * metres));
         }
         point.finish(timeline.len());
         point
@@ -90,6 +90,7 @@ fn body(timeline: Timeline, tracks: Vec<Track>, metres: f64, together: bool) -> 
         points: points.collect(),
         timeline,
         warnings: Vec::new(),
+        rate_hz: None,
     }
 }
 
@@ -190,6 +191,7 @@ impl<'f> Reader<'f> {
                 .place
                 .map_or([None; 3], |[x, y]| [Some(x), Some(y), None]),
             likelihood: None,
+            rotation: None,
         });
         let columns = columns.collect();
         let point = |track: Track| {
@@ -292,7 +294,11 @@ impl<'f> Reader<'f> {
             let stamp = stamp.and_then(|clock| stamps.get(clock).copied().flatten());
             let place = (self.value(line, x, "x")?, self.value(line, y, "y")?);
             places.push(match (stamp, place) {
-                (Some(time), (Some(x), Some(y))) => Some((time, [x, y, 0.0])),
+                (Some(time_s), (Some(x), Some(y))) => Some(Seen {
+                    time_s,
+                    place: [x, y, 0.0],
+                    turn: None,
+                }),
                 (None | Some(_), (None, None)) => None,
                 (Some(_), _) => {
                     half_blank = true;

@@ -36,7 +36,7 @@ pub(super) fn read(lines: &mut Lines<'_>, reading: &Reading<'_>) -> Result<Draft
     let delimiter = if by_tabs {
         Delimiter::Tab
     } else {
-        Delimiter::of(first.text)
+        Delimiter::of(keys.text)
     };
     let (key_cells, value_cells) = (
         split(keys, delimiter, file)?,

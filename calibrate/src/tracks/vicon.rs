@@ -1,5 +1,5 @@
-//! Vicon's CSV, a section of trajectories (`X,Y,Z`) or of rigid bodies (`Objects`, `Segments`: `RX,RY,RZ,TX,TY,TZ`, of which the
-//! positions are read): its name, the rate, names above the axes, a row of units.
+//! Vicon's CSV, a section of trajectories (`X,Y,Z`) or of rigid bodies (`Objects`, `Segments`: `RX,RY,RZ,TX,TY,TZ`, a rotation
+//! vector and a position): its name, the rate, names above the axes, a row of units.
 
 use std::path::Path;
 
@@ -7,6 +7,7 @@ use super::cells::{Cell, cell_at, split};
 use super::grid::{self, Clock, Columns, Grid};
 use super::lines::{Delimiter, Line, Lines};
 use super::number;
+use super::rotation::Rotation;
 use super::{
     Draft, Place, PointKind, Reading, TrackError, TrackFormat, TrackPoint, TrackProblem,
     TrackWarning, Unit,
@@ -81,8 +82,30 @@ pub(super) fn read(
         } else {
             PointKind::of_marker(&name)
         };
-        points.push(TrackPoint::new(name, kind, String::new(), Vec::new()));
-        columns.push(Columns::of(places));
+        let rotation = ["RX", "RY", "RZ"].map(|axis| {
+            let mut inside = column..end;
+            inside.find(|at| cell_at(&axis_cells, *at).is(axis))
+        });
+        let rotation = match rotation {
+            [Some(x), Some(y), Some(z)] => {
+                let radians = match cell_at(&unit_cells, x).raw {
+                    "rad" => 1.0,
+                    _ => 1_f64.to_radians(),
+                };
+                Some(Rotation::Vector([x, y, z], radians))
+            }
+            _ => None,
+        };
+        let point = TrackPoint::new(name, kind, String::new(), Vec::new());
+        points.push(if rotation.is_some() {
+            point.oriented()
+        } else {
+            point
+        });
+        columns.push(Columns {
+            rotation,
+            ..Columns::of(places)
+        });
     }
     let Some(own) = own else {
         return Err(names.error(file, 0, TrackProblem::NoPoints));

@@ -21,12 +21,14 @@ pub enum TrackWarning {
         /// Rows with data.
         rows: usize,
     },
-    /// The time column runs at another rate than the header says; the header's rate was used.
+    /// The time column runs at another rate than the header says.
     TimeColumn {
         /// The header's rate \[Hz\].
         header_hz: f64,
         /// The time column's rate \[Hz\].
         column_hz: f64,
+        /// Whether the difference is so large that the time column was used.
+        column_used: bool,
     },
     /// Positions with one axis blank were taken as missing.
     HalfBlank {
@@ -42,6 +44,8 @@ pub enum TrackWarning {
     },
     /// There was no header: columns were taken for x, y, z of one point after another.
     NoHeader,
+    /// There was no header: columns were taken for a time and a pose.
+    Poses,
     /// The system of the file is left-handed; Z was turned round.
     LeftHanded,
     /// A track has columns, but no x and y.
@@ -86,6 +90,13 @@ pub enum TrackWarning {
         /// The first line with one.
         first_line: usize,
     },
+    /// Frames number rigid bodies otherwise than the bodies' own records; each pose went to the body whose markers it explains.
+    BodyNumbers {
+        /// Poses that went to a body of another number.
+        renumbered: usize,
+        /// Poses that no body's markers explain; they were left out.
+        left_out: usize,
+    },
     /// The time steps of a table differ by more than a hundredth.
     UnevenTimes {
         /// The shortest \[s\].
@@ -124,9 +135,11 @@ impl fmt::Display for TrackWarning {
             Self::TimeColumn {
                 header_hz,
                 column_hz,
+                column_used,
             } => write!(
                 f,
-                "the header says {header_hz} frames a second, the time column {column_hz:.4}; the header's rate was used"
+                "the header says {header_hz} frames a second, the time column {column_hz:.4}; the {} rate was used",
+                if *column_used { "time column's" } else { "header's" }
             ),
             Self::HalfBlank { count, first_line } => write!(
                 f,
@@ -135,6 +148,9 @@ impl fmt::Display for TrackWarning {
             Self::LastLineCut { line } => write!(f, "line {line}, the last, was cut and left out"),
             Self::NoHeader => f.write_str(
                 "there is no header; the columns behind frame and time were taken for x, y, z of one point after another",
+            ),
+            Self::Poses => f.write_str(
+                "there is no header; the columns were taken for the time, the position and the orientation of one body",
             ),
             Self::LeftHanded => {
                 f.write_str("the file's axes are left-handed; Z was turned round to make them right-handed")
@@ -165,6 +181,14 @@ impl fmt::Display for TrackWarning {
             Self::Renumbered { count, first_line } => write!(
                 f,
                 "{count} frame numbers do not grow, the first on line {first_line}, but the times do; the times were used"
+            ),
+            Self::BodyNumbers {
+                renumbered,
+                left_out,
+            } => write!(
+                f,
+                "rigid bodies are numbered differently in frames and in their own records: {renumbered} poses went to the body whose \
+                 markers they explain, {left_out} that explain none were left out"
             ),
             Self::UnevenTimes { shortest, longest } => {
                 write!(f, "time steps range from {shortest:.6} s to {longest:.6} s")

@@ -3,7 +3,7 @@
 
 mod header;
 
-use super::grid::{self, Clock, Columns, Grid};
+use super::grid::{self, Clock, Grid};
 use super::lines::{Delimiter, Lines};
 use super::{Draft, Reading, TrackError, TrackFormat, TrackWarning};
 
@@ -36,7 +36,7 @@ pub(super) fn read(
                 time: Some(1),
             },
             metres,
-            columns: header.columns.into_iter().map(Columns::of).collect(),
+            columns: header.columns,
             ..Grid::under(header.axis_line, delimiter, header.width, header.points)
         },
     )?;

@@ -294,6 +294,7 @@ impl Tank {
                 point: back,
                 at: [-self.reach(), 0.0],
             },
+            body: None,
             sides: None,
         }
     }

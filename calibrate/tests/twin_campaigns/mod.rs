@@ -148,6 +148,7 @@ impl Laboratory {
             reflectors: Reflectors {
                 front: reflector("Front", reach),
                 back: reflector("Back", -reach),
+                body: None,
                 sides: None,
             },
             tracks: TrackSettings::default(),

@@ -11,10 +11,10 @@ use std::path::{Path, PathBuf};
 
 use calibrate::{
     CalibrateError, CampaignData, CampaignFit, EvidenceOptions, FitError, FitOptions, RunResult,
-    TrackOptions, assess, c_t_form, calibrate_campaign, calibrate_run, load_run, usual_reflectors,
-    weigh_evidence,
+    TrackOptions, UsedPoints, assess, c_t_form, calibrate_campaign, calibrate_run, load_run,
+    usual_reflectors, weigh_evidence,
 };
-use swimmer_files::{Campaign, GaitSpec, PointName, SwimmerFile};
+use swimmer_files::{Campaign, GaitSpec, PointName, Reflector, Reflectors, RigidBody, SwimmerFile};
 
 use self::answer::RunsAnswer;
 pub(crate) use self::answer::{FitAnswer, RunAnswer};
@@ -55,6 +55,9 @@ pub(crate) struct Calibrate {
     /// The back reflector of a single run, likewise
     #[arg(long, value_name = "NAME|X,Y", allow_hyphen_values = true)]
     back: Option<PointName>,
+    /// The rigid body that is the middle link of a single run, instead of two reflectors: its name in the file
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["front", "back"])]
+    body: Option<String>,
     /// Level of the intervals
     #[arg(long, value_name = "SHARE", default_value_t = 0.95, value_parser = level)]
     level: f64,
@@ -149,6 +152,34 @@ pub(crate) fn fit_campaign(path: &Path, level: f64) -> Outcome<FittedCampaign> {
     })
 }
 
+/// What the middle link of a single run is called in its file.
+#[derive(Debug, Default)]
+pub(crate) struct MiddleLink {
+    pub(crate) front: Option<PointName>,
+    pub(crate) back: Option<PointName>,
+    pub(crate) body: Option<String>,
+}
+
+impl MiddleLink {
+    /// Reflectors at the ends of a link of this length \[m\], or its rigid body; `None` if nothing is named.
+    fn reflectors(&self, length: f64) -> Option<Reflectors> {
+        if self.front.is_none() && self.back.is_none() && self.body.is_none() {
+            return None;
+        }
+        // Whoever names one end does not mean the other one by its usual name.
+        let end = |name: &Option<PointName>, along: f64| Reflector {
+            point: name.clone().unwrap_or(PointName::Auto),
+            at: [along, 0.0],
+        };
+        Some(Reflectors {
+            front: end(&self.front, length / 2.0),
+            back: end(&self.back, -length / 2.0),
+            body: self.body.clone().map(RigidBody::named),
+            sides: None,
+        })
+    }
+}
+
 /// Reads one track and finds its cycles.
 ///
 /// # Errors
@@ -159,21 +190,23 @@ pub(crate) fn single_run(
     period_s: f64,
     swimmer: &SwimmerFile,
     options: &TrackOptions,
-    ends: [Option<&PointName>; 2],
+    link: &MiddleLink,
 ) -> Outcome<RunCycles> {
     let mut options = options.clone();
-    for end in ends.into_iter().flatten() {
+    for end in [&link.front, &link.back].into_iter().flatten() {
         if let PointName::Columns(x, y) = end {
             options.pairs.push([x.clone(), y.clone()]);
         }
     }
+    let length = swimmer.swimmer.links.middle;
+    options.used = Some(link.reflectors(length).map_or_else(
+        || UsedPoints::usual(length),
+        |reflectors| UsedPoints::of(&reflectors),
+    ));
     let data = load_run(track, gait, period_s, &options)?;
-    let mut reflectors = usual_reflectors(&data.track, &swimmer.swimmer);
-    // Who names one end does not want the other one by its usual name.
-    if ends.iter().any(Option::is_some) {
-        let [front, back] = ends.map(|end| end.cloned().unwrap_or(PointName::Auto));
-        (reflectors.front.point, reflectors.back.point) = (front, back);
-    }
+    let reflectors = link
+        .reflectors(length)
+        .unwrap_or_else(|| usual_reflectors(&data.track, &swimmer.swimmer));
     let found = calibrate_run(&data, &reflectors, swimmer)?;
     Ok(RunCycles {
         answer: RunAnswer::new(&found, gait, Path::new("")),
@@ -198,6 +231,7 @@ impl Calibrate {
             ("--swimmer", self.swimmer.is_some()),
             ("--front", self.front.is_some()),
             ("--back", self.back.is_some()),
+            ("--body", self.body.is_some()),
         ];
         let flag = single_only
             .iter()
@@ -280,7 +314,11 @@ impl Calibrate {
             period_s,
             &swimmer,
             &self.recording.options(),
-            [self.front.as_ref(), self.back.as_ref()],
+            &MiddleLink {
+                front: self.front.clone(),
+                back: self.back.clone(),
+                body: self.body.clone(),
+            },
         )?;
         let mut warnings = run_warnings(&run.found, Path::new(""));
         let file = self.file.display();

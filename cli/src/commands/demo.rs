@@ -219,7 +219,7 @@ impl<'a> Round<'a> {
             period_s,
             &fitted,
             &TrackOptions::default(),
-            [None, None],
+            &MiddleLink::default(),
         )?;
         self.doing("racing the fastest gait against it");
         let race = self.race(&fitted, &best.gait_file(&fitted.name))?;

@@ -32,8 +32,9 @@ pub(super) struct RawTracks {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawReflectors {
-    pub(super) front: RawReflector,
-    pub(super) back: Spanned<RawReflector>,
+    pub(super) front: Option<Spanned<RawReflector>>,
+    pub(super) back: Option<Spanned<RawReflector>>,
+    pub(super) body: Option<Spanned<RawBody>>,
     pub(super) front_link: Option<Spanned<RawReflector>>,
     pub(super) back_link: Option<Spanned<RawReflector>>,
 }
@@ -43,6 +44,27 @@ pub(super) struct RawReflectors {
 pub(super) struct RawReflector {
     pub(super) point: RawPoint,
     pub(super) at: Spanned<[f64; 2]>,
+}
+
+#[derive(Deserialize)]
+#[serde(
+    untagged,
+    expecting = "a body is a name, or { name = \"robot\", at = [x, y], axis = \"z\", heading_deg = 0.0 }, of which only the name is needed"
+)]
+pub(super) enum RawBody {
+    Name(String),
+    Table(RawBodyTable),
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RawBodyTable {
+    pub(super) name: String,
+    #[serde(default)]
+    pub(super) at: [f64; 2],
+    pub(super) axis: Option<String>,
+    #[serde(default)]
+    pub(super) heading_deg: f64,
 }
 
 #[derive(Deserialize)]

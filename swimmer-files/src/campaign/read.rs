@@ -4,6 +4,7 @@ use std::path::Path;
 
 use toml::Spanned;
 
+use super::body::body;
 use super::known;
 use super::raw::{RawCampaign, RawPoint, RawReflector, RawReflectors, RawRun, RawTracks};
 use super::table::table;
@@ -29,7 +30,7 @@ pub(super) fn campaign(
     let is_preset = SwimmerFile::preset(raw.swimmer.get_ref()).is_some();
     let swimmer_path = (!is_preset).then(|| folder.join(raw.swimmer.get_ref()));
     let reflectors = if let Some(told) = raw.reflectors {
-        reflectors(told, &error)?
+        reflectors(told, swimmer.swimmer.links.middle / 2.0, &error)?
     } else {
         // Only a track needs them.
         if let Some(track) = raw.run.iter().find_map(|run| run.track.as_ref()) {
@@ -101,14 +102,38 @@ fn track_settings(
     })
 }
 
+/// The reflectors of a campaign; `half` is that of the middle link \[m\].
 fn reflectors(
     raw: RawReflectors,
+    half: f64,
     error: &impl Fn(usize, String) -> FileError,
 ) -> Result<Reflectors, FileError> {
-    let back_place = raw.back.span().start;
+    let back_place = raw.back.as_ref().map_or(0, |back| back.span().start);
+    let usual = usual_reflectors(half);
+    let (front, back, body) = match (raw.front, raw.back, raw.body) {
+        (Some(front), Some(back), None) => (
+            reflector(front.into_inner(), error)?,
+            reflector(back.into_inner(), error)?,
+            None,
+        ),
+        (None, None, Some(raw)) => (usual.front, usual.back, Some(body(raw, error)?)),
+        (front, back, Some(_)) => {
+            let lone = front.or(back).map_or(0, |lone| lone.span().start);
+            let problem =
+                "the middle link is tracked by `body` or by `front` and `back`; remove one of them"
+                    .to_owned();
+            return Err(error(lone, problem));
+        }
+        (front, back, None) => {
+            let lone = front.or(back).map_or(0, |lone| lone.span().start);
+            let problem = "[reflectors] needs `front` and `back`, or `body`".to_owned();
+            return Err(error(lone, problem));
+        }
+    };
     let reflectors = Reflectors {
-        front: reflector(raw.front, error)?,
-        back: reflector(raw.back.into_inner(), error)?,
+        front,
+        back,
+        body,
         sides: match (raw.front_link, raw.back_link) {
             (Some(front), Some(back)) => Some([side(front, error)?, side(back, error)?]),
             (None, None) => None,
@@ -137,6 +162,7 @@ fn usual_reflectors(half: f64) -> Reflectors {
     Reflectors {
         front: at(half),
         back: at(-half),
+        body: None,
         sides: None,
     }
 }

@@ -15,17 +15,10 @@ use crate::{TrackFile, TrackPoint};
 pub(super) const REACH: (f64, f64) = (0.3, 0.45);
 /// Limits after a gap over the medians of a first pass: six standard deviations of a distance, ten of a prediction.
 const TIGHTER: (f64, f64) = (9.0, 8.0);
+/// Largest noise of the reflectors' distance that is allowed for, as a share of it.
+const MOST_NOISE: f64 = 0.3;
 /// More candidates than this in a row are cut off: no recording has them, and the search is quadratic.
 const MOST_CANDIDATES: usize = 64;
-
-/// Whether a point goes by this name: its own, or the part behind an asset's name and a colon.
-pub(crate) fn is_called(point: &TrackPoint, name: &str) -> bool {
-    point.name == name
-        || point
-            .name
-            .rsplit_once(':')
-            .is_some_and(|(_, last)| last == name)
-}
 
 /// The points that a reflector may be called by; measured ones if there are any.
 fn labelled(
@@ -55,15 +48,15 @@ fn labelled(
             let exact = matching(&|point| point.name == *name);
             (
                 if exact.is_empty() {
-                    matching(&|point| is_called(point, name))
+                    matching(&|point| point.is_called(name))
                 } else {
                     exact
                 },
                 name.clone(),
             )
         }
-        PointName::Columns(x, y) => {
-            let pair = |point: &TrackPoint| matches!(point.columns.as_slice(), [a, b, ..] if a == x && b == y);
+        columns @ PointName::Columns(x, y) => {
+            let pair = |point: &TrackPoint| point.goes_by(columns);
             (matching(&pair), format!("{x}, {y}"))
         }
     };
@@ -98,6 +91,21 @@ pub(super) struct Search<'a> {
 
 /// A candidate of a row: which point, and where.
 pub(super) type Candidate = (usize, Vector3<f64>);
+
+impl<'a> Search<'a> {
+    /// Without candidates: the reflectors are not to be searched for.
+    pub(super) fn of_nothing(track: &'a TrackFile, distance: f64) -> Self {
+        Self {
+            track,
+            pool: Vec::new(),
+            fronts: Vec::new(),
+            backs: Vec::new(),
+            distance,
+            tolerance: 0.0,
+            after_gap: (0.0, 0.0),
+        }
+    }
+}
 
 impl Search<'_> {
     pub(super) fn candidates(&self, row: usize, out: &mut Vec<Candidate>) {
@@ -141,10 +149,13 @@ impl Search<'_> {
         let deviation = median(distances.map(|d| (d - distance).abs())).unwrap_or(0.0);
         let miss = median(rows.iter().filter_map(|row| row.miss)).unwrap_or(0.0);
         self.distance = distance;
+        // Noise of the cameras may be wider than the usual tolerance.
+        let noise = (TIGHTER.0 * deviation).min(MOST_NOISE * distance);
+        self.tolerance = self.tolerance.max(noise);
         let widest = self.tolerance.max(2e-3 * distance);
         self.after_gap = (
             (TIGHTER.0 * deviation).clamp(2e-3 * distance, widest),
-            (TIGHTER.1 * miss).clamp(5e-3 * distance, 0.1 * distance),
+            (TIGHTER.1 * miss).clamp(5e-3 * distance, REACH.0 * distance),
         );
     }
 
@@ -307,27 +318,5 @@ fn find_labels(search: &mut Search<'_>) {
         };
         search.fronts = vec![front];
         search.backs = vec![back];
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::PointKind;
-
-    #[test]
-    fn names_may_stand_behind_an_asset() {
-        let point = |name: &str| {
-            TrackPoint::new(
-                name.to_owned(),
-                PointKind::Marker,
-                String::new(),
-                Vec::new(),
-            )
-        };
-        assert!(is_called(&point("Front"), "Front") && is_called(&point("robot:Front"), "Front"));
-        assert!(
-            !is_called(&point("Front2"), "Front") && !is_called(&point("Front"), "robot:Front")
-        );
     }
 }

@@ -2,6 +2,17 @@
 
 use crate::tracks::TrackWarning;
 
+/// A header's rate is wrong if it differs by more than this share from the time column's; clocks differ by far less.
+const CONTRADICTS: f64 = 0.01;
+
+/// The clock of a time column: a frame, its time, and frames a second.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::tracks) struct ColumnClock {
+    pub(in crate::tracks) frame: u64,
+    pub(in crate::tracks) time_s: f64,
+    pub(in crate::tracks) rate_hz: f64,
+}
+
 /// What is worth a warning at the end.
 #[derive(Default)]
 pub(super) struct Notes {
@@ -33,12 +44,14 @@ impl Notes {
         self.last_time = Some((frame, time));
     }
 
+    /// Adds the warnings. Returns the clock of the time column if it contradicts the header's rate by so much that the header is
+    /// wrong.
     pub(super) fn tell(
         &self,
         rate_hz: Option<f64>,
         threshold: f64,
         warnings: &mut Vec<TrackWarning>,
-    ) {
+    ) -> Option<ColumnClock> {
         if self.jumps > 0 {
             warnings.push(TrackWarning::FrameJumps {
                 jumps: self.jumps,
@@ -60,11 +73,20 @@ impl Notes {
             let (frames, time) = (f1.saturating_sub(f0) as f64, t1 - t0);
             // Two rounded times may be a unit of their last digit off, whatever the span.
             if f1 > f0 && (time - frames / rate_hz).abs() > 1e-3 * (1.0 + frames / rate_hz) {
+                let column_hz = frames / time;
+                let column_used = time > 0.0 && (column_hz / rate_hz - 1.0).abs() > CONTRADICTS;
                 warnings.push(TrackWarning::TimeColumn {
                     header_hz: rate_hz,
-                    column_hz: frames / time,
+                    column_hz,
+                    column_used,
+                });
+                return column_used.then_some(ColumnClock {
+                    frame: f0,
+                    time_s: t0,
+                    rate_hz: column_hz,
                 });
             }
         }
+        None
     }
 }

@@ -6,6 +6,7 @@ use super::{MOST, Number};
 use crate::tracks::cells::{Cell, Cells};
 use crate::tracks::lines::{Delimiter, Line};
 use crate::tracks::number::number;
+use crate::tracks::rotation::Rotation;
 use crate::tracks::{TrackError, TrackProblem};
 
 /// What three coordinates say.
@@ -127,6 +128,18 @@ impl<'r> Record<'r> {
             0 => Place::Seen(place),
             3 => Place::Missing,
             _ => Place::HalfBlank,
+        })
+    }
+
+    /// A quaternion (x, y, z, w); `None` if it is missing or no rotation.
+    pub(super) fn turn(&self, at: usize) -> Result<Option<[f64; 4]>, TrackError> {
+        let columns = [at, at + 1, at + 2, at + 3];
+        Rotation::Quaternion(columns).read(|field| {
+            match number(self.cells.text(&self.line, field).unwrap_or(""), self.comma) {
+                Number::Finite(value) => Ok(Some(value)),
+                Number::Missing => Ok(None),
+                Number::Wrong => Err(self.not_a_number(field, "rotation")),
+            }
         })
     }
 

@@ -3,8 +3,10 @@
 use std::path::Path;
 
 use crate::tracks::cells::{Cell, split};
+use crate::tracks::grid;
 use crate::tracks::lines::{Delimiter, Line};
 use crate::tracks::number;
+use crate::tracks::rotation::Rotation;
 use crate::tracks::{PointKind, TrackError, TrackPoint, TrackProblem, Unit};
 
 /// What the head says.
@@ -23,8 +25,8 @@ pub(super) struct Header {
     pub(super) axis_line: usize,
     /// The points, without positions yet.
     pub(super) points: Vec<TrackPoint>,
-    /// For each point the columns of its x, y and z.
-    pub(super) columns: Vec<[usize; 3]>,
+    /// The columns of each point.
+    pub(super) columns: Vec<grid::Columns>,
 }
 
 /// Reads up to and with the row that begins with `Frame`.
@@ -105,6 +107,7 @@ fn assemble<'a>(
             ids: rows.ids,
             components,
             axes,
+            order: keys.rotation_order(),
         },
         &axis_line,
         file,
@@ -180,6 +183,19 @@ impl<'a> Keys<'_, 'a> {
         })
     }
 
+    /// The order of Euler angles by `Rotation Type`.
+    fn rotation_order(&self) -> [usize; 3] {
+        let text = self.find("Rotation Type").map_or("", |cell| cell.raw);
+        let axes: Vec<usize> = text
+            .chars()
+            .filter_map(|letter| "XYZ".find(letter.to_ascii_uppercase()))
+            .collect();
+        match axes.as_slice() {
+            [a, b, c] if a != b && b != c && a != c => [*a, *b, *c],
+            _ => [0, 1, 2],
+        }
+    }
+
     fn global_space(&self) -> Result<(), TrackError> {
         match self.find("Coordinate Space") {
             Some(cell) if !cell.raw.is_empty() && !cell.is("Global") => {
@@ -230,6 +246,22 @@ struct Columns<'r, 'a> {
     ids: Option<&'r [Cell<'a>]>,
     components: &'r [Cell<'a>],
     axes: &'r [Cell<'a>],
+    /// Of Euler angles.
+    order: [usize; 3],
+}
+
+impl<'a> Columns<'_, 'a> {
+    /// Type, name and ID of a column.
+    fn key(&self, index: usize) -> (&'a str, &'a str, &'a str) {
+        let of = |row: &[Cell<'a>]| row.get(index).map_or("", |cell| cell.raw);
+        (of(self.types), of(self.names), self.ids.map_or("", of))
+    }
+
+    /// Whether the column has this component.
+    fn is(&self, index: usize, component: &str) -> bool {
+        let cell = self.components.get(index);
+        cell.is_some_and(|cell| cell.is(component))
+    }
 }
 
 /// A group of columns while it is put together.
@@ -237,6 +269,21 @@ struct Group<'a> {
     key: (&'a str, &'a str, &'a str),
     at: usize,
     columns: [Option<usize>; 3],
+    /// Columns of its rotation: x, y, z, w.
+    rotation: [Option<usize>; 4],
+}
+
+impl Group<'_> {
+    /// Quaternion or, without a w, Euler angles in degrees.
+    fn rotation(&self, order: [usize; 3]) -> Option<Rotation> {
+        match self.rotation {
+            [Some(x), Some(y), Some(z), Some(w)] => Some(Rotation::Quaternion([x, y, z, w])),
+            [Some(x), Some(y), Some(z), None] => {
+                Some(Rotation::Euler([x, y, z], order, 1_f64.to_radians()))
+            }
+            _ => None,
+        }
+    }
 }
 
 /// Groups the position columns by (type, name, ID); a letter that comes again under the same key begins another point.
@@ -244,27 +291,34 @@ fn points(
     columns: &Columns<'_, '_>,
     axis_line: &Line<'_>,
     file: &Path,
-) -> Result<(Vec<TrackPoint>, Vec<[usize; 3]>), TrackError> {
+) -> Result<(Vec<TrackPoint>, Vec<grid::Columns>), TrackError> {
     let mut groups: Vec<Group<'_>> = Vec::new();
     let text =
         |row: &[Cell<'_>], index: usize| row.get(index).is_some_and(|cell| !cell.raw.is_empty());
+    // Rotations stand before the positions of their bodies.
+    let mut rotations: Vec<((&str, &str, &str), [Option<usize>; 4])> = Vec::new();
     for (index, axis) in columns.axes.iter().enumerate().skip(2) {
+        let key = columns.key(index);
+        if columns.is(index, "Rotation") {
+            let letter = ["X", "Y", "Z", "W"]
+                .iter()
+                .position(|letter| axis.is(letter));
+            let known = rotations.iter().position(|(known, _)| *known == key);
+            let known = known.unwrap_or_else(|| {
+                rotations.push((key, [None; 4]));
+                rotations.len() - 1
+            });
+            let slot = letter.and_then(|letter| rotations.get_mut(known)?.1.get_mut(letter));
+            if let Some(slot) = slot {
+                slot.get_or_insert(index);
+            }
+            continue;
+        }
         let letter = ["X", "Y", "Z"].iter().position(|letter| axis.is(letter));
-        let position = columns
-            .components
-            .get(index)
-            .is_some_and(|cell| cell.is("Position"));
+        let position = columns.is(index, "Position");
         let (Some(letter), true, true) = (letter, position, text(columns.types, index)) else {
             continue;
         };
-        let key = (
-            columns.types.get(index).map_or("", |cell| cell.raw),
-            columns.names.get(index).map_or("", |cell| cell.raw),
-            columns
-                .ids
-                .and_then(|ids| ids.get(index))
-                .map_or("", |cell| cell.raw),
-        );
         let open = groups.iter_mut().rev().find(|group| group.key == key);
         if let Some(slot) = open
             .and_then(|group| group.columns.get_mut(letter))
@@ -277,6 +331,10 @@ fn points(
             key,
             at: axis.at,
             columns: [None; 3],
+            rotation: rotations
+                .iter()
+                .find(|(known, _)| *known == key)
+                .map_or([None; 4], |(_, columns)| *columns),
         };
         if let Some(slot) = group.columns.get_mut(letter) {
             *slot = Some(index);
@@ -303,13 +361,18 @@ fn points(
             z.ok_or_else(|| axis('Z'))?,
         );
         let name = name.replace("\"\"", "\"");
-        found.0.push(TrackPoint::new(
-            name.clone(),
-            kind_of(kind, &name),
-            id.to_owned(),
-            Vec::new(),
-        ));
-        found.1.push([x, y, z]);
+        let kind = kind_of(kind, &name);
+        let rotation = group.rotation(columns.order);
+        let point = TrackPoint::new(name, kind, id.to_owned(), Vec::new());
+        found.0.push(if rotation.is_some() {
+            point.oriented()
+        } else {
+            point
+        });
+        found.1.push(grid::Columns {
+            rotation,
+            ..grid::Columns::of([x, y, z])
+        });
     }
     Ok(found)
 }

@@ -83,7 +83,7 @@ impl Round<'_> {
             period_s,
             fitted,
             &TrackOptions::default(),
-            [None, None],
+            &MiddleLink::default(),
         )?;
         let speed = |x: f64, y: f64| x.hypot(y) / period_s;
         Ok(Raced {
