@@ -21,7 +21,7 @@ use swimmer_model::Swimmer;
 use self::answer::DemoAnswer;
 use self::laboratory::Laboratory;
 use self::race::Race;
-use super::calibrate::{FittedCampaign, RunCycles, fit_campaign, single_run};
+use super::calibrate::{FittedCampaign, MiddleLink, RunCycles, fit_campaign, single_run};
 use super::lab;
 use super::robot::table_of;
 use crate::arguments::load_swimmer;

@@ -10,7 +10,7 @@ use swimmer_files::{AnyGait, Bounds, GaitFile, GaitSpec, SwimmerFile};
 
 use super::{CYCLES, Round};
 use crate::arguments::model;
-use crate::commands::calibrate::single_run;
+use crate::commands::calibrate::{MiddleLink, single_run};
 use crate::failure::{Failure, Outcome};
 use crate::playable::playable;
 use crate::threads;
