@@ -75,7 +75,7 @@ pub enum TrackError {
 fn text_export(format: &str) -> &'static str {
     match format {
         "hdf5" => {
-            "DeepLabCut writes CSV beside it (deeplabcut.analyze_videos with save_as_csv=True, or \
+            "DeepLabCut also writes CSV (deeplabcut.analyze_videos with save_as_csv=True, or \
              deeplabcut.analyze_videos_converth5_to_csv), SLEAP by sleap-convert --format analysis.csv"
         }
         "c3d" => {

@@ -1,4 +1,6 @@
 //! Writers of tracking files: one motion in the format of each program. They share no code with the readers.
+// Each test uses a part.
+#![allow(dead_code)]
 
 use std::fmt::Write;
 
