@@ -119,7 +119,7 @@ pub fn advise(campaign: &Campaign, found: &CampaignFit) -> Result<Advice, FitErr
     })
 }
 
-/// Whether the robot's check of its table lets it play a gait. Servos that no file names are the robot's own.
+/// Returns `true` if the robot's check of its table accepts a gait. Servos that no file names are the robot's own.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // bounded: a period of hours, lengths of metres
 fn plays(swimmer: &Swimmer<f64>, servo: Option<ServoFile>, gait: &AnyGait, period_s: f64) -> bool {
     let Ok(table) = forecast::table(gait, KNOTS) else {

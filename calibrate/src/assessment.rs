@@ -35,22 +35,22 @@ use crate::fit::run_values::RunValues;
 use crate::fit::tangent::Tangent;
 use crate::least_squares::Model as _;
 
-/// What the runs say of the fit's errors.
+/// Assessment of a fit's errors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Assessment {
-    /// What to do with the answer.
+    /// Recommendation for the use of the fit.
     pub verdict: Verdict,
-    /// Why; empty where there is nothing against it.
+    /// Reasons; empty if nothing speaks against the fit.
     pub reasons: Vec<String>,
     /// The answer that is recommended.
     pub headline: Headline,
-    /// How well the model explains the runs.
+    /// Goodness of fit.
     pub goodness: Goodness,
     /// r_s and χ where what is known by halves may move; `None` where the runs are too few for it.
     pub systematics: Option<Systematics>,
-    /// How r_s and χ move with what is taken for granted.
+    /// Sensitivity of r_s and χ to the assumptions.
     pub budget: Vec<BudgetLine>,
-    /// What explains the runs beside r_s and χ, the likeliest first.
+    /// Alternative explanations of the runs, the most likely first.
     pub explanations: Vec<Explanation>,
 }
 
@@ -118,7 +118,7 @@ impl Plain {
         self.model.start.swimmer.total_length()
     }
 
-    /// What the files say of a parameter.
+    /// Value of a parameter by the files.
     fn filed(&self, parameter: Parameter) -> f64 {
         match parameter {
             Parameter::DeadBand => self.model.start.servo.map_or(0.0, |servo| servo.dead_band),

@@ -121,7 +121,7 @@ pub fn calibrate_campaign(
     }
 }
 
-/// The runs that the campaign does not exclude, tracked or told.
+/// The runs that the campaign does not exclude, with tracks or stated results.
 fn begun<'a>(
     campaign: &Campaign,
     data: &'a CampaignData,

@@ -1,14 +1,13 @@
-//! From poses to cycles: X, Y and rotation of each, ΔY and Δθ, their means and deviations.
+//! Cycles of a pose track: X, Y and rotation of each, ΔY and Δθ, with means and deviations.
 //!
-//! * The stretch in which the robot swam is found from its motion; the first whole cycle in it is start-up and dropped, so are
-//!   partial cycles at both ends, cycles with more than a tenth of their samples missing, and cycles unlike the others (the
-//!   robot stopped or was pushed).
-//! * The period is the commanded one, refined within ±2 % where the data speak clearly for another.
-//! * A cycle starts at the gait's first point, where φ₁ = φ₂ > 0. Where the robot's link log or its flash tells when, that is
-//!   taken ([`Timing`]). Else, since the cameras do not see the joints, the start is where the heading's harmonics match those
-//!   of the model swimming the same gait; for the gaits of the paper that does not depend on the drag, by symmetry.
+//! * Motion bounds the stretch in which the robot swam. The first whole cycle in it is start-up and is dropped. So are partial
+//!   cycles at both ends, cycles with too many missing samples, and cycles unlike the others (the robot stopped or was pushed).
+//! * The period is the commanded one, refined within ±2 % if the data clearly favour another.
+//! * A cycle starts at the gait's first point, where φ₁ = φ₂ > 0. If the robot's link log or its flash gives the time, that is
+//!   used ([`Timing`]). Otherwise the start is where the heading's harmonics match those of the model with the same gait, since
+//!   the cameras do not see the joints. For the paper's gaits the match does not depend on the drag, by symmetry.
 //! * X and Y are the step of SE(2) from one cycle to the next in the frame of the cycle's first heading. ΔY and Δθ are half
-//!   of max − min of the cycle's harmonics, drawn about the drift from one cycle's mean to the next one's.
+//!   of max − min of the cycle's harmonics about the drift from one cycle's mean to the next one's.
 
 mod clock;
 mod curve;
@@ -37,23 +36,24 @@ pub use statistics::Statistics;
 use warning::SAME_PHASE;
 pub use warning::{CycleWarning, LeftOut};
 
-/// Times that a start is refined: each leaves the square of the error before.
+/// Refinements of a start: each squares the error.
 const REFINEMENTS: usize = 2;
-/// Clocks of robot and cameras run alike to this: crystals by far.
+/// Largest difference between the clocks of robot and cameras, as a share: far above that of crystals.
 const CLOCKS_DIFFER: f64 = 1e-3;
-/// Fewer samples in a cycle than this draw no curve.
+/// Least number of samples in a cycle for a curve.
 const FEWEST_SAMPLES: f64 = 24.0;
-/// Share of a cycle's samples that may be missing in gaps that show in its curve,
+/// Largest share of a cycle's samples missing in gaps that affect its curve.
 const MOST_MISSING: f64 = 0.1;
-/// and share that may be missing at all: frames that are lost one by one leave the curve as it is, only less sure.
+/// Largest share of a cycle's samples missing at all. Single lost frames widen the error of the curve, but do not bias it.
 const MOST_LOST: f64 = 0.5;
-/// A filled gap up to this share of a cycle, or of one frame, does not show: it is a twentieth of the highest harmonic's half wave.
+/// Longest filled gap that does not affect the curve, as a share of a cycle: a twentieth of the highest harmonic's half wave.
+/// A gap of one frame never does.
 const SHORT_GAP: f64 = 0.005;
 
 /// One cycle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cycle {
-    /// When it starts \[s\].
+    /// Start \[s\].
     pub start_s: f64,
     /// (X, Y) \[m\] and rotation \[rad\] to the next cycle, in the frame of this one's first heading; `None` where the next
     /// cycle was left out.
@@ -95,16 +95,16 @@ pub struct Cycles {
     pub delta_y: Statistics,
     /// Δθ \[rad\].
     pub delta_theta: Statistics,
-    /// How their starts were found.
+    /// Method by which their starts were determined.
     pub phase: Phase,
-    /// What to know.
+    /// Warnings.
     pub warnings: Vec<CycleWarning>,
     /// Mean harmonics of the heading, from the cycles' starts.
     pub(crate) heading: Harmonics,
 }
 
 impl Cycles {
-    /// Of a run whose results were told: means and their errors, and no cycle.
+    /// Result of a run with stated values: means and their errors, and no cycle.
     pub(crate) fn told(told: &ToldRun, period_s: f64) -> Self {
         let of = |value: &Option<ToldValue>| Statistics::told(value.as_ref(), told.cycles);
         Self {
@@ -122,7 +122,7 @@ impl Cycles {
         }
     }
 
-    /// How many the means are of; `None` where nobody told.
+    /// Number of cycles in the means; `None` if it is not stated.
     pub fn count(&self) -> Option<usize> {
         match self.phase {
             Phase::Told => {
@@ -134,7 +134,7 @@ impl Cycles {
     }
 }
 
-/// What does not depend on where a cycle starts: found once a run.
+/// Timing of a run that does not depend on the start of a cycle; computed once per run.
 #[derive(Debug, Clone)]
 pub(crate) struct Clock {
     period_s: f64,
@@ -152,7 +152,7 @@ impl Clock {
         commanded_s: f64,
         timing: &Timing,
     ) -> Result<Self, CycleError> {
-        // What the robot was told is better known than what was written down.
+        // The log of the commands is surer than the campaign file.
         let commanded_s = timing
             .play
             .as_ref()
@@ -223,7 +223,7 @@ impl Clock {
         let rough = self.rough_start(model).map_err(lost)?;
         let mut start = self.starts.nearest(rough, self.motion_s, self.period_s);
         for _ in 0..REFINEMENTS {
-            // Why there are no cycles, the caller will hear when it asks for them.
+            // The caller gets the reason when it requests the cycles.
             let Ok(cycles) = self.cycles(track, start) else {
                 break;
             };
@@ -232,13 +232,13 @@ impl Clock {
         Ok(start)
     }
 
-    /// How much later than in these cycles the heading says that they began \[s\].
+    /// Delay of the cycles' start by the heading, relative to these cycles \[s\].
     pub(crate) fn phase_error(&self, cycles: &Cycles, model: &Harmonics) -> f64 {
         let shift = clock::shift(&cycles.heading, model).unwrap_or(0.0);
         (shift - shift.round()) * self.period_s
     }
 
-    /// Says so where the heading contradicts a start that was told.
+    /// Warns if the heading contradicts a stated start.
     ///
     /// # Errors
     /// [`CycleError::OtherPeriod`] where it goes through several cycles of the model in one period.
@@ -386,7 +386,7 @@ fn no_motion(track: &PoseTrack, period_s: f64) -> CycleError {
     }
 }
 
-/// How many samples are filled in gaps of at most so many.
+/// Number of samples in filled gaps of at most `longest` rows.
 fn in_short_gaps(samples: &[PoseSample], longest: f64) -> usize {
     let gaps = samples.chunk_by(|a, b| a.is_filled() == b.is_filled());
     let short = gaps.filter(|gap| gap.first().is_some_and(PoseSample::is_filled));

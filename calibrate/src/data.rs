@@ -1,4 +1,4 @@
-//! What a campaign names, read: the one place of this crate that opens files.
+//! Files of a campaign. Only this module of the crate opens files.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -20,7 +20,7 @@ use crate::tracks::{
 pub struct RunData {
     /// The tracking file's path, for messages.
     pub file: PathBuf,
-    /// What it holds.
+    /// Its content.
     pub track: TrackFile,
     /// The gait that was played.
     pub gait: AnyGait,
@@ -57,9 +57,9 @@ fn reflectors_of(common: &Reflectors, front: Option<&PointName>) -> Reflectors {
 pub struct CampaignData {
     /// The tracked runs that the campaign does not exclude, in its order.
     pub runs: Vec<RunData>,
-    /// The gaits of those whose results are told, likewise.
+    /// The gaits of runs whose results are stated, likewise.
     pub told: Vec<AnyGait>,
-    /// What link logs say otherwise than the campaign, each with its run's file.
+    /// Contradictions between link logs and campaign, each with its run's file.
     pub doubts: Vec<String>,
 }
 
@@ -112,7 +112,7 @@ impl CampaignData {
     }
 }
 
-/// What a campaign names, one file after the other.
+/// Reader of a campaign's files, one after the other.
 struct Files<'a, O> {
     /// Of all tracks.
     common: TrackOptions,
@@ -157,7 +157,7 @@ impl<R: Read, O: Fn(&Path) -> io::Result<R>> Files<'_, O> {
         })
     }
 
-    /// When the run's cycles began, as far as that is told, and what its link log says otherwise.
+    /// Known starts of the run's cycles, and contradictions of its link log.
     fn timing(
         &mut self,
         run: &CampaignRun,
@@ -207,7 +207,7 @@ fn opened(file: &Path) -> io::Result<File> {
     File::open(file).map_err(next)
 }
 
-/// What reflectors and settings of a campaign say about its tracks.
+/// Options for a campaign's tracks, by its reflectors and settings.
 ///
 /// ```
 /// use calibrate::track_options;

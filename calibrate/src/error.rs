@@ -35,7 +35,7 @@ pub enum CalibrateError {
     Play {
         /// The log.
         log: PathBuf,
-        /// What is missing.
+        /// Missing key.
         problem: String,
     },
     /// A track gave no poses.
@@ -68,7 +68,7 @@ pub enum CalibrateError {
 }
 
 impl CalibrateError {
-    /// Whether the input is to blame (bad usage, exit 2) rather than the outcome (exit 1).
+    /// Returns `true` if the input is at fault (exit 2), `false` if the outcome is (exit 1).
     pub fn is_bad_input(&self) -> bool {
         match self {
             Self::Open { .. }
@@ -107,7 +107,7 @@ impl From<InvalidSwimmer> for CalibrateError {
 /// Why nothing was fitted.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FitError {
-    /// The starting swimmer is none.
+    /// The starting swimmer is invalid.
     #[error("{0}")]
     Swimmer(#[from] InvalidSwimmer),
     /// A level that is no share.
@@ -136,12 +136,12 @@ pub enum FitError {
         files: String,
         /// The first one's X \[m\].
         measured_m: f64,
-        /// What the model swims \[m\].
+        /// Displacement of the model \[m\].
         predicted_m: f64,
         /// The direction that the first one must have run in, and the change of its name.
         direction: &'static str,
     },
-    /// The data say nothing about some combination of what was asked.
+    /// The data do not determine some combination of the requested parameters.
     #[error(
         "these runs do not determine {parameters} together; fit fewer parameters, or measure other gaits and amplitudes"
     )]
@@ -149,13 +149,13 @@ pub enum FitError {
         /// Their names.
         parameters: String,
     },
-    /// What is asked for was measured.
+    /// The parameter was measured.
     #[error(
         "{parameter} cannot be fitted: the reflectors on the side links show the joint angles of all runs, so that it is measured \
          (`joints` in the answer); leave it out of --fit-also"
     )]
     Measured {
-        /// What.
+        /// The parameter.
         parameter: &'static str,
     },
     /// No start led anywhere.
@@ -163,7 +163,7 @@ pub enum FitError {
         "the fit did not converge from any of {starts} starts; look at X, ΔY and Δθ of the runs first"
     )]
     NoConvergence {
-        /// How many starts.
+        /// Number of starts.
         starts: usize,
     },
 }

@@ -1,4 +1,4 @@
-//! What the data say about r_s and χ beyond the paper's fit: computed on demand from a finished fit.
+//! Likelihood, profiles and bootstrap of r_s and χ, computed on demand from a finished fit.
 //!
 //! Beside the paper's criterion, which weighs all runs alike, stands a likelihood: each X, ΔY and Δθ has a variance of its own,
 //! from the cycles of its run and from what differs from run to run (`fit/components.rs`). From it come a second estimate, profiles,
@@ -26,7 +26,7 @@ use likelihood_problem::{LikelihoodProblem, RECTANGLES};
 use profile::Scale;
 use surface::Surface;
 
-/// How much to compute.
+/// Extent of the computation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct EvidenceOptions {
     /// Draws of the bootstrap.
@@ -93,7 +93,7 @@ pub struct Likelihood {
     pub correlation: f64,
 }
 
-/// What is left of one quantity of one run at the estimate of greatest likelihood; m or rad.
+/// Residual of one quantity of one run at the estimate of greatest likelihood; m or rad.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct RunError {
     /// Measured mean.
@@ -109,7 +109,7 @@ pub struct RunError {
 }
 
 impl RunError {
-    /// Of what was neither measured nor told.
+    /// Of a value that was neither measured nor stated.
     pub(crate) const NONE: Self = Self {
         measured: f64::NAN,
         predicted: f64::NAN,
@@ -128,7 +128,7 @@ pub struct Profile {
     pub threshold: f64,
     /// The interval.
     pub interval: [f64; 2],
-    /// Whether the profile did not fall to the threshold as far as it was followed: then that end is no bound.
+    /// `true` if the profile did not fall to the threshold within its range: then that end is no bound.
     pub open: [bool; 2],
     /// Degrees of freedom of Student's t.
     pub freedom: f64,
@@ -164,7 +164,7 @@ pub struct Contour {
 pub struct CycleBootstrap {
     /// Where the draws came from.
     pub seed: u64,
-    /// How many.
+    /// Number.
     pub draws: usize,
     /// Draws whose fit ended at the border of what was looked at: intervals mean little where they are many.
     pub at_border: usize,
@@ -215,13 +215,13 @@ pub struct Evidence {
     pub bootstrap: Option<CycleBootstrap>,
     /// Both fits without each run.
     pub without_run: Vec<WithoutRun>,
-    /// What stands out.
+    /// Outliers.
     pub outliers: Vec<Outlier>,
     /// Circles by the starting swimmer.
     pub start_curve: Vec<CurvePoint>,
     /// Circles by the swimmer of the paper's fit.
     pub fitted_curve: Vec<CurvePoint>,
-    /// How far the polynomials through the model's answers are off, as a share of the largest X, ΔY, Δθ.
+    /// Error of the polynomials through the model's values, as a share of the largest X, ΔY, Δθ.
     pub surface_error: f64,
 }
 

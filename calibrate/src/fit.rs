@@ -42,10 +42,10 @@ pub(crate) use search::search;
 /// Weights of X, ΔY and Δθ in the paper's criterion, which leaves out Y and net turn.
 pub(crate) const WEIGHTS: [f64; QUANTITIES] = [0.5, 0.25, 0.25, 0.0, 0.0];
 
-/// How far off a reflector's place may be, where the campaign says nothing \[m\].
+/// Usual error of a reflector's place, if the campaign states none \[m\].
 pub(crate) const REFLECTOR: f64 = 5e-4;
 
-/// What a fit is made from besides the data.
+/// Options of a fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FitOptions {
     /// Level of the intervals.
@@ -59,10 +59,10 @@ impl Default for FitOptions {
     }
 }
 
-/// What is left between one run and the fitted model: simulated less measured.
+/// Residual of one run: simulated less measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RunResidual {
-    /// What the fitted model does.
+    /// Cycle by the fitted model.
     pub predicted: PredictedCycle,
     /// X \[m\].
     pub x_m: f64,
@@ -85,19 +85,19 @@ pub struct Fit {
     pub rmse: f64,
     /// Intervals of both.
     pub intervals: Intervals,
-    /// How c_t is tied to the viscosity: the result hangs on it.
+    /// Relation of c_t to the viscosity, on which the result depends.
     pub c_t_form: TangentialDrag<f64>,
-    /// What is left, run by run.
+    /// Residuals, run by run.
     pub residuals: Vec<RunResidual>,
     /// Condition number of the Jacobian in (r_s/L, ln χ): how narrow the valley is.
     pub condition: f64,
     /// Correlation between r_s and ln χ.
     pub correlation: f64,
-    /// What to know about it.
+    /// Warnings.
     pub warnings: Vec<FitWarning>,
 }
 
-/// What to know about a fit.
+/// Warning about a fit.
 #[derive(Debug, Clone, PartialEq)]
 pub enum FitWarning {
     /// r_s and χ trade against each other.
@@ -109,7 +109,7 @@ pub enum FitWarning {
     },
     /// Few data.
     FewRuns {
-        /// How many.
+        /// Number of runs.
         runs: usize,
     },
     /// The optimum has no sphere.
@@ -131,7 +131,7 @@ pub enum FitWarning {
         found: f64,
         /// Gain in log-likelihood.
         gain: f64,
-        /// What explains them nearly as well, and by how much.
+        /// Explanation that fits nearly as well, and its deviation.
         rival: Option<(&'static str, f64)>,
     },
     /// Another servo gain would explain the runs much better.
@@ -140,7 +140,7 @@ pub enum FitWarning {
         found: f64,
         /// Growth of the log-likelihood.
         gain: f64,
-        /// What explains them nearly as well, and by how much.
+        /// Explanation that fits nearly as well, and its deviation.
         rival: Option<(&'static str, f64)>,
     },
     /// Two runs hold the same cycles.
@@ -233,7 +233,7 @@ pub(crate) fn short_name(file: &Path) -> String {
     name.to_string_lossy().into_owned()
 }
 
-/// What explains the runs as well.
+/// Writes the explanation that fits equally well.
 fn alike(f: &mut std::fmt::Formatter<'_>, rival: Option<(&str, f64)>) -> std::fmt::Result {
     rival.map_or(Ok(()), |(name, gain)| {
         write!(
@@ -267,9 +267,9 @@ pub struct ExcludedRun {
     pub file: PathBuf,
     /// Why: as the campaign says, or because of its sign.
     pub reason: String,
-    /// Whether it was left out because it swims against the model.
+    /// `true` if the run was left out because it swims against the model.
     pub by_sign: bool,
-    /// What came of it, where it was looked at.
+    /// Its result, if it was evaluated.
     pub result: Option<RunResult>,
 }
 
@@ -278,7 +278,7 @@ pub struct ExcludedRun {
 pub struct CampaignFit {
     /// The swimmer that the fit started from.
     pub start: SwimmerFile,
-    /// What the campaign states to be known beforehand.
+    /// Prior knowledge that the campaign states.
     pub known: Known,
     /// The runs that were fitted, in the campaign's order.
     pub runs: Vec<RunResult>,
@@ -301,7 +301,7 @@ impl CampaignFit {
         [self.fit.sphere_radius / self.length(), self.fit.chi.ln()]
     }
 
-    /// What the servos made of their commands, where reflectors on the side links show it: the mean of the runs, front and back.
+    /// Responses of the servos by reflectors on the side links: the mean of the runs, front and back.
     /// An offset's error holds what half a millimetre (or what the campaign states) of the reflector's place makes of it.
     pub fn servos(&self) -> Option<[MeasuredServo; 2]> {
         let measured = |run: &RunResult| run.joints.as_ref()?.servos;
@@ -327,7 +327,7 @@ impl CampaignFit {
         Some([servo(0)?, servo(1)?])
     }
 
-    /// What its runs measured.
+    /// Measured values of its runs.
     pub(crate) fn values(&self) -> Result<RunValues, FitError> {
         let played: Vec<&Played> = self.runs.iter().map(|run| &run.played).collect();
         RunValues::of(
@@ -357,7 +357,7 @@ impl CampaignFit {
         )?)
     }
 
-    /// The median of the runs' commanded periods \[s\], for a gait that none of them swam.
+    /// The median of the runs' commanded periods \[s\], for a gait that no run swam.
     pub(crate) fn usual_period_s(&self) -> f64 {
         median(self.runs.iter().map(|run| run.played.period_s)).unwrap_or(1.0)
     }

@@ -1,4 +1,4 @@
-//! The joint angles as two reflectors on the side links show them: Φ(t) as it was, whatever the servos were told.
+//! Joint angles measured by two reflectors on the side links: the true Φ(t), independent of the commands.
 //!
 //! A side link's reflector lies at a known place from its joint, the joint at an end of the middle link, and the middle link's
 //! pose is measured: the reflector's direction from the joint is the link's (`follow.rs`). All cycles together give each angle's
@@ -27,14 +27,14 @@ pub use servo::combined;
 pub struct Measured {
     /// The value.
     pub value: f64,
-    /// Its standard error; not a number where nothing tells it.
+    /// Its standard error; NaN if it is unknown.
     pub error: f64,
 }
 
-/// What a servo made of its command: φ follows gain · command(t − lag) + offset, with a play of the dead band either way.
+/// Response of a servo: φ follows gain · command(t − lag) + offset, with a play of the dead band either way.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct MeasuredServo {
-    /// What it turned over what it was told.
+    /// Angle per commanded angle.
     pub gain: Measured,
     /// Half of its play \[rad\].
     #[serde(rename = "dead_band_rad")]
@@ -42,7 +42,7 @@ pub struct MeasuredServo {
     /// The joint's angle at command 0 \[rad\].
     #[serde(rename = "offset_rad")]
     pub offset: Measured,
-    /// How late it was \[s\]; `None` where the heading told when cycles began, which takes a lag for a later beginning.
+    /// Lag \[s\]; `None` if the cycles were timed by the heading, which cannot distinguish a lag from a later start.
     #[serde(rename = "lag_s")]
     pub lag: Option<Measured>,
 }
@@ -54,7 +54,7 @@ pub struct MeasuredJoints {
     pub seen: [f64; 2],
     /// Root mean square distance of the samples from the mean curves, front and back \[rad\].
     pub scatter: [f64; 2],
-    /// What the servos made of the command; `None` where the gait does not tell.
+    /// Responses of the servos; `None` if the gait does not determine them.
     pub servos: Option<[MeasuredServo; 2]>,
     /// The mean curves.
     pub(crate) path: JointPath,

@@ -7,12 +7,12 @@ const STEPS: usize = 60;
 /// Parameters are of order one: what moves less stands still.
 const STILL: f64 = 1e-10;
 
-/// What foretells measured values from parameters.
+/// Model that predicts measured values from parameters.
 pub(crate) trait Model {
     /// Least and largest value of each parameter.
     fn bounds(&self) -> Vec<(f64, f64)>;
 
-    /// All values; `None` where there are none.
+    /// All values; `None` if the model has none there.
     fn values(&self, at: &[f64]) -> Option<Vec<f64>>;
 
     /// Their derivatives: a row for each value, a column for each parameter.

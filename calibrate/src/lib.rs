@@ -11,7 +11,7 @@
 //! [`load_run`], which read what the caller names. [`predict`] is the model's side of the fit, for anyone who wants to know
 //! beforehand what the cameras will see.
 //!
-//! A fit of six runs that are told as results, as a paper's figure tells them:
+//! A fit of six runs with stated results, as in a paper's figure:
 //!
 //! ```
 //! use std::fmt::Write;
@@ -40,7 +40,7 @@
 //! assert!((found.fit.chi / truth.swimmer.chi - 1.0).abs() < 1e-3);
 //! assert!((found.fit.sphere_radius / truth.swimmer.sphere_radius - 1.0).abs() < 1e-3);
 //!
-//! // Each run swam the gait that it says; the same sway, said to be of 44°, would be told.
+//! // Each run swam the gait that is stated; the same sway with a stated amplitude of 44° is reported.
 //! assert!(other_gaits(&campaign, &found.runs, &found.swimmer).is_empty());
 //! campaign.runs[0].gait = swimmer_files::GaitSpec::Circle { amplitude: 44_f64.to_radians(), clockwise: false };
 //! let other = other_gaits(&campaign, &found.runs, &found.swimmer)[0];

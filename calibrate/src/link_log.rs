@@ -1,4 +1,4 @@
-//! What a run's link log says: which play the run was, and whether it was what the campaign says.
+//! Link log of a run: the play that the run was, and contradictions of the campaign.
 
 use std::path::Path;
 
@@ -9,12 +9,12 @@ use crate::cycles::Timing;
 use crate::error::CalibrateError;
 use crate::median::median;
 
-/// A joint that was told to be further off than this was told another gait \[rad\]: dead bands and rounding are far smaller.
+/// A joint commanded further off than this belongs to another gait \[rad\]: dead bands and rounding are far smaller.
 const OFF: f64 = 0.035;
 /// A period that differs by more is another one, as a share.
 const OTHER_PERIOD: f64 = 0.01;
 
-/// What a link log holds, found once for all runs that name it.
+/// Plays of a link log, computed once for all runs that name it.
 pub(crate) struct Logged {
     ended: bool,
     frames: usize,
@@ -63,7 +63,7 @@ impl Logged {
         })
     }
 
-    /// What it says otherwise than the campaign, and that it has no end.
+    /// Contradictions of the campaign, and a missing end.
     pub(crate) fn doubts(&self, play: &Play, run: &CampaignRun, gait: &AnyGait) -> Vec<String> {
         let mut said = Vec::new();
         if !self.ended {
@@ -95,7 +95,7 @@ impl Logged {
     }
 }
 
-/// The largest angles told and named, where half of what the joints were told is not this gait.
+/// The largest commanded and stated angles, if half of the commands do not belong to this gait.
 fn told_another(play: &Play, gait: &AnyGait) -> Option<[f64; 2]> {
     let named = |fraction: f64| -> [f64; 2] { gait.at(fraction).phi.into() };
     let largest = |angles: [f64; 2]| angles[0].abs().max(angles[1].abs());

@@ -1,6 +1,6 @@
-//! What else may not be as the files say: c_t/μ, where the joints' zero is, how far a servo's dead band reaches, where the
-//! reflectors sit. Each can be fitted along with r_s and χ; where the data cannot tell two apart, the answer says so. A dead
-//! band that nobody knew of is looked for in every fit (`scan.rs`).
+//! Nuisance parameters: c_t/μ, zeros of the joints, dead bands of the servos, places of the reflectors. Each can be fitted along
+//! with r_s and χ; a warning names parameters that the data cannot distinguish. Every fit scans for an unknown dead band
+//! (`scan.rs`).
 
 pub(crate) mod scan;
 
@@ -15,7 +15,7 @@ use crate::fit::run_model::RunModel;
 use crate::fit::{CampaignFit, Intervals};
 use crate::least_squares::{Model as _, weighted};
 
-/// What can be fitted along with r_s and χ.
+/// Parameter that can be fitted along with r_s and χ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Further {
     /// c_t/μ, common to all links.
@@ -26,7 +26,7 @@ pub enum Further {
     DeadBand,
     /// Where the reflectors' middle sits on the middle link, along and across.
     MarkerOffset,
-    /// What both servos turn over what they are told.
+    /// Gain of both servos (angle per commanded angle).
     Gain,
     /// The same of each servo.
     Gains,
@@ -58,7 +58,7 @@ impl Further {
         Self::Distortion,
     ];
 
-    /// How it is asked for: the words of `swimmer calibrate --fit-also`.
+    /// Name on the command line: `swimmer calibrate --fit-also`.
     pub const fn word(self) -> &'static str {
         match self {
             Self::TangentialDrag => "ct",
@@ -75,7 +75,7 @@ impl Further {
         }
     }
 
-    /// The one that is asked for by this word.
+    /// The parameter of this word on the command line.
     ///
     /// ```
     /// use calibrate::Further;
@@ -111,11 +111,11 @@ impl Further {
 /// A parameter with its interval.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FittedParameter {
-    /// What it is.
+    /// The parameter.
     pub name: &'static str,
     /// m, rad, or nothing.
     pub unit: &'static str,
-    /// What the files say, or the fit without the further parameters.
+    /// Value by the files, or by the fit without the further parameters.
     pub before: f64,
     /// The estimate.
     pub value: f64,
@@ -125,10 +125,10 @@ pub struct FittedParameter {
     pub bounds: [f64; 2],
 }
 
-/// What to know about a fit of further parameters.
+/// Warning about a fit of further parameters.
 #[derive(Debug, Clone, PartialEq)]
 pub enum FurtherWarning {
-    /// Two parameters that the data cannot tell apart.
+    /// Two parameters that the data cannot distinguish.
     Alike {
         /// Their names.
         names: [&'static str; 2],
@@ -215,7 +215,7 @@ pub struct FurtherFit {
     /// The swimmer with all that it can hold: r_s, χ, c_t/μ, dead band.
     #[serde(skip)]
     pub swimmer: SwimmerFile,
-    /// What to know about it.
+    /// Warnings.
     pub warnings: Vec<FurtherWarning>,
 }
 
@@ -231,7 +231,7 @@ pub fn fit_further(found: &CampaignFit, further: &[Further]) -> Result<FurtherFi
     let mut parameters = plain.clone();
     parameters.extend(wanted.iter().flat_map(|further| further.parameters()));
     let mut data = found.values()?;
-    // Y and the net turn tell the front from the back; all that is symmetric leaves them alone.
+    // Y and the net turn distinguish front and back; symmetric parameters do not change them.
     if wanted.iter().any(|further| {
         matches!(
             further,
@@ -266,7 +266,7 @@ pub fn fit_further(found: &CampaignFit, further: &[Further]) -> Result<FurtherFi
     summary(&model, &begun, &after, gain, found.fit.intervals.level).ok_or_else(undetermined)
 }
 
-/// What the files say of each parameter, and the fit of r_s and χ.
+/// Values of the parameters by the files, and the fit of r_s and χ.
 fn begin(model: &RunModel, found: &CampaignFit) -> Vec<f64> {
     let [radius, chi] = found.optimum();
     let of = |parameter: &Parameter| match parameter {
@@ -278,7 +278,7 @@ fn begin(model: &RunModel, found: &CampaignFit) -> Vec<f64> {
     model.parameters.iter().map(of).collect()
 }
 
-/// Dead bands to start from \[rad\], beside the files'.
+/// Dead bands to start from \[rad\], in addition to the files'.
 const DEAD_BANDS: [f64; 3] = [0.03, 0.09, 0.18];
 /// Offsets of the reflectors' middle to start from, as shares of the largest: seen from the wrong side of the joints' middle a link
 /// sways nearly as much, so that there are two minima.

@@ -42,7 +42,7 @@ pub use warning::PoseWarning;
 pub struct PoseOptions {
     /// Gaps up to this long are filled \[s\].
     pub longest_fill_s: f64,
-    /// How far the reflectors' distance may be from its mean to be taken for the pair, as a share of it.
+    /// Largest deviation of the reflectors' distance from its mean, as a share of it.
     pub distance_tolerance: f64,
 }
 
@@ -74,11 +74,11 @@ pub struct PoseSample {
     pub time_s: f64,
     /// Centre of the middle link \[m\] and its heading, unwrapped.
     pub pose: Pose<f64>,
-    /// How it was found.
+    /// Origin of the sample.
     pub origin: Origin,
 }
 
-/// How the front reflector was told from the back one: from two points alone nobody can.
+/// Rule that distinguishes the front reflector from the back one: two points alone do not show it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FrontRule {
     /// By the points' names in the file.
@@ -114,7 +114,7 @@ impl fmt::Display for FrontRule {
     }
 }
 
-/// How a pose was found.
+/// Origin of a pose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Origin {
     /// Both reflectors were seen.
@@ -144,7 +144,7 @@ impl Origin {
 }
 
 impl PoseSample {
-    /// Whether a reflector at least was lost.
+    /// Returns `true` if at least one reflector was lost.
     pub fn is_filled(&self) -> bool {
         matches!(self.origin, Origin::OneSeen | Origin::Filled)
     }
@@ -161,15 +161,15 @@ pub struct PoseTrack {
     pub rate_hz: f64,
     /// The plane, and how the file's axes map to x and y.
     pub plane: Plane,
-    /// How the reflectors were followed.
+    /// Report on following the reflectors.
     pub report: FollowReport,
     /// Where the pose jumps: nothing that spans one of these is a measurement.
     pub jumps: Vec<Jump>,
-    /// How the resting robot moves, where it rests before or after its cycles: what the fluid does.
+    /// Motion of the robot while it rests before or after its cycles, by the fluid.
     pub drift: Option<Drift>,
-    /// How front and back were told apart.
+    /// Rule that distinguished front and back.
     pub front: FrontRule,
-    /// What to know about them.
+    /// Warnings.
     pub warnings: Vec<PoseWarning>,
 }
 
@@ -189,7 +189,7 @@ impl PoseTrack {
         }
     }
 
-    /// The samples that were seen, and not beside a gap.
+    /// The samples that were seen, and not next to a gap.
     pub fn seen(&self) -> impl Iterator<Item = &PoseSample> {
         self.with(Origin::Seen)
     }

@@ -1,5 +1,5 @@
-//! What a cycle ought to look like: the model swims the gait that was played, and the result goes through the same estimator
-//! as a measured cycle.
+//! Prediction of a cycle: the model swims the gait that was played, and the result passes the same estimator as a measured
+//! cycle.
 //!
 //! With ideal servos that is the gait itself, swum by [`swimmer_model::trajectory`]. With a `[servo]` table it is the path
 //! that the joints really take ([`gait_player::playback`]: table of 512 knots in 1e-4 rad, pulses at 50 Hz, dead band, rate
@@ -257,7 +257,7 @@ impl Observation {
 }
 
 impl SwumCycle {
-    /// The cycle as it is measured by such cameras, when another model may tell where cycles start, with these harmonics of its
+    /// The cycle as such cameras measure it, if another model determines the start of cycles, by these harmonics of its
     /// heading.
     pub(crate) fn as_cut(
         &self,
@@ -320,7 +320,7 @@ impl View {
     }
 }
 
-/// What was played in one run.
+/// Gait and joint path of one run, as played.
 #[derive(Debug, Clone)]
 pub(crate) struct Played {
     pub(crate) gait: AnyGait,

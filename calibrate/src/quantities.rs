@@ -1,11 +1,11 @@
-//! What is measured of a run's cycles and predicted of them: five quantities, always in this order.
+//! The five quantities that are measured of a run's cycles and predicted, always in this order.
 
 use crate::cycles::{Cycles, Statistics};
 use crate::prediction::PredictedCycle;
 
-/// Values of one run: X, ΔY, Δθ, and what symmetric gaits have none of: Y and the net turn.
+/// Values of one run: X, ΔY, Δθ, and Y and the net turn, which are zero for symmetric gaits.
 pub(crate) const QUANTITIES: usize = 5;
-/// How many of them, from the first, tell r_s and χ.
+/// Number of quantities, from the first, that determine r_s and χ.
 pub(crate) const TELLING: usize = 3;
 /// Their names.
 pub(crate) const NAMES: [&str; QUANTITIES] = ["X", "ΔY", "Δθ", "Y", "net turn"];
@@ -22,7 +22,7 @@ pub(crate) fn predicted(cycle: &PredictedCycle) -> [f64; QUANTITIES] {
     [x_m, delta_y_m, delta_theta_rad, y_m, rotation_rad]
 }
 
-/// What a run's cycles measured, in the order of the values.
+/// Measured values of a run's cycles, in the order of the quantities.
 pub(crate) fn measured(cycles: &Cycles) -> [Statistics; QUANTITIES] {
     let Cycles {
         x,

@@ -28,28 +28,28 @@ pub(crate) use told::Told;
 pub struct RunResult {
     /// Its place in the campaign.
     pub index: usize,
-    /// The tracking file, or where its results were told.
+    /// The tracking file, or the place of its stated results.
     pub file: PathBuf,
     /// The gait as it was named.
     pub gait: String,
-    /// The poses; none of a run whose results were told.
+    /// The poses; empty for a run with stated results.
     pub poses: PoseTrack,
     /// The cycles: X, Y, rotation, ΔY, Δθ with deviations, the refined period.
     pub cycles: Cycles,
-    /// What reader, poses and cycles had to say.
+    /// Warnings of reader, poses and cycles.
     pub warnings: Vec<String>,
-    /// How far apart the reflectors are by the campaign \[m\].
+    /// Distance of the reflectors by the campaign \[m\].
     pub reflector_distance_m: f64,
     /// Its joint angles, where reflectors on the side links showed them.
     pub joints: Option<MeasuredJoints>,
-    /// What was played: as it was seen, or as it was told.
+    /// Gait that was played, as measured or as stated.
     pub(crate) played: Played,
     /// Variances that the scatter between its cycles does not show.
     pub(crate) errors: RunErrors,
 }
 
 impl RunResult {
-    /// Whether its results were told, and there is no track.
+    /// Returns `true` if results were stated, and there is no track.
     pub fn is_told(&self) -> bool {
         self.cycles.phase == Phase::Told
     }
@@ -60,7 +60,7 @@ impl RunResult {
 pub(crate) struct Opposed {
     pub(crate) measured_m: f64,
     pub(crate) predicted_m: f64,
-    /// Whether its gait is named with `:cw`.
+    /// Returns `true` if its gait is named with `:cw`.
     pub(crate) is_clockwise: bool,
 }
 
@@ -96,7 +96,7 @@ pub(crate) struct Run<'a> {
     reflectors: Reflectors,
     poses: PoseTrack,
     pub(crate) clock: Clock,
-    /// As the robot was told: by this its cycles are cut.
+    /// Commanded gait, by which its cycles are cut.
     told: Played,
     joints: Option<MeasuredJoints>,
 }
@@ -138,7 +138,7 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// What the model is to swim: the angles that were seen in the cycles as they were last cut, else those that were told.
+    /// Joint path for the model: the measured angles of the last cycles, else the stated gait.
     pub(crate) fn played(&self) -> Played {
         match &self.joints {
             None => self.told.clone(),
@@ -280,7 +280,7 @@ impl<'a> Run<'a> {
     }
 }
 
-/// Whether X has the other sign than the model's, and about its size.
+/// Returns `true` if X has the opposite sign of the model's, and about its size.
 fn opposed(cycles: &Cycles, predicted_m: f64, is_clockwise: bool) -> Option<Opposed> {
     let measured_m = cycles.x.mean;
     let reversed = REVERSED.contains(&(measured_m / predicted_m));

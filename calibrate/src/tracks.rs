@@ -1,6 +1,6 @@
-//! Tracking files: which format is it, what does it hold, where is each point in each frame?
+//! Tracking files: format, points, and the position of each point in each frame.
 //!
-//! Which format it is, the first lines say and never the file's name:
+//! The first lines determine the format, never the file's name:
 //!
 //! | format | [`TrackFile::format`] | reader |
 //! |---|---|---|
@@ -22,7 +22,7 @@
 //! none and needs the same memory for any length of file (but for exports with a clock for each track: Tracker side by side
 //! and Kinovea's text). A unit that the file does not say is never guessed: [`Unit::Pixel`] and [`Unit::Unknown`] need a scale before there can be poses.
 //!
-//! What [`TrackFile::points`] lists: every group of columns that holds a position — measured markers, unlabeled ones,
+//! [`TrackFile::points`] lists every group of columns that holds a position — measured markers, unlabeled ones,
 //! rigid bodies and their solved markers —, in the order of the file, keyed by type, name and ID together, also when it is
 //! blank in every frame. Quaternions and quality columns are no points. A gap is a run of consecutive rows in which the
 //! point is missing; runs at the beginning and at the end count as well, a jump in the frame number does not (it is a
@@ -129,7 +129,7 @@ impl fmt::Display for TrackFormat {
     }
 }
 
-/// What a tracking file holds.
+/// Content of a tracking file.
 #[derive(Debug, Clone)]
 pub struct TrackFile {
     /// Its format.
@@ -147,12 +147,12 @@ pub struct TrackFile {
     pub axes: Option<Axes>,
     /// Every group of columns with positions, in the order of the file.
     pub points: Vec<TrackPoint>,
-    /// What the reader noticed; none of it made a number wrong.
+    /// Irregularities that the reader noticed; all numbers are right.
     pub warnings: Vec<TrackWarning>,
 }
 
 impl TrackFile {
-    /// How many rows with data there are (what the header says is not asked: it may lie).
+    /// Number of rows with data. The header's number is not used, as it may be wrong.
     pub fn frames(&self) -> usize {
         self.times.len()
     }
@@ -166,7 +166,7 @@ impl TrackFile {
     }
 }
 
-/// What is being read, how, and whether the places of points are kept or only counted.
+/// Context of a reader: file, options, and whether positions are kept or only counted.
 #[derive(Debug, Clone, Copy)]
 struct Reading<'a> {
     file: &'a Path,
@@ -174,13 +174,13 @@ struct Reading<'a> {
     keeps_places: bool,
 }
 
-/// What a reader hands over.
+/// Result of a format's reader.
 struct Draft {
     format: TrackFormat,
     /// Where the header says it.
     rate_hz: Option<f64>,
     unit: Unit,
-    /// Whether these are places in an image, whose y runs down.
+    /// `true` for positions in an image, whose y runs down.
     image: bool,
     body: Body,
     /// From the header, and from holding it against the rows.
@@ -243,7 +243,7 @@ struct Finished {
 /// `file` is only for the messages.
 ///
 /// # Errors
-/// [`TrackError`]: a file that is none, or a broken one with line and column.
+/// [`TrackError`]: an unknown or broken file, with line and column.
 ///
 /// ```
 /// let text = "t,x1,y1,x2,y2\n0,1,2,3,4\n0.01,1.5,2.5,,\n0.02,2,3,4,5\n";
@@ -281,7 +281,7 @@ pub fn read_tracks_with(
     Ok(read(bytes, &reading)?.file)
 }
 
-/// What a tracking file holds, in the same memory for any length of it.
+/// Lists the content of a tracking file, in constant memory.
 ///
 /// # Errors
 /// As [`read_tracks_with`].

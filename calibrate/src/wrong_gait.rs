@@ -1,4 +1,4 @@
-//! Whether each run swam the gait that it is said to have swum, by how far it swayed and yawed.
+//! Check of the gait that a run is said to have swum, by its sway and yaw.
 
 use std::fmt;
 
@@ -10,7 +10,7 @@ use crate::{RunResult, predict};
 /// An amplitude that fits the sway less well than this belongs to another gait, as a share, among runs whose common factor is
 /// known.
 const OFF_AMONG_OTHERS: f64 = 0.06;
-/// From so many runs on they have a common factor: that of the servos' gain, and of what the model does not know.
+/// Least number of runs whose common factor is estimated: it holds the servos' gain and errors of the model.
 const ENOUGH_RUNS: usize = 3;
 /// Corrections of the amplitude.
 const CORRECTIONS: usize = 3;
@@ -37,7 +37,7 @@ impl fmt::Display for OtherGait {
     }
 }
 
-/// The runs of a campaign whose sway and yaw are those of another amplitude, beside what is common to all runs.
+/// The runs of a campaign whose sway and yaw fit another amplitude, after the factor common to all runs.
 pub fn other_gaits(
     campaign: &Campaign,
     runs: &[RunResult],

@@ -1,4 +1,4 @@
-//! How far r_s and χ are off where what the files take for granted is off by a little.
+//! Error budget: changes of r_s and χ for small errors of the assumptions.
 
 use serde::Serialize;
 
@@ -10,20 +10,20 @@ use crate::least_squares::Model as _;
 /// One line of the budget.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct BudgetLine {
-    /// What is off.
+    /// Name of the assumption.
     pub name: &'static str,
     /// By how much: a share, m or rad.
     pub by: f64,
     /// m, rad, or nothing for a share.
     pub unit: &'static str,
-    /// What that adds to the r_s of greatest likelihood \[m\].
+    /// Change of the r_s of greatest likelihood \[m\].
     #[serde(rename = "sphere_radius_m")]
     pub sphere_radius: f64,
-    /// What it adds to χ.
+    /// Change of χ.
     pub chi: f64,
-    /// How well it is known, in the same unit; `None` where it is taken for exact.
+    /// Standard deviation of the prior, in the same unit; `None` if it is taken as exact.
     pub width: Option<f64>,
-    /// Whether the campaign states that.
+    /// `true` if the campaign states the prior.
     pub stated: bool,
 }
 
@@ -31,7 +31,7 @@ const DEGREE: f64 = std::f64::consts::PI / 180.0;
 const MILLIMETRE: f64 = 1e-3;
 const PERCENT: f64 = 0.01;
 
-/// What the budget asks after, and by how much it is off.
+/// Assumptions of the budget, each with the size of its error.
 const LINES: [(Parameter, f64); 18] = [
     (Parameter::Gain, PERCENT),
     (Parameter::Scale, PERCENT),

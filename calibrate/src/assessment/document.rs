@@ -1,4 +1,4 @@
-//! The assessment as a document: what `swimmer calibrate --json` tells of its own answer, and the lab page shows.
+//! Assessment as a document: the part of `swimmer calibrate --json` about the quality of the fit, which the lab page shows as well.
 
 use std::path::Path;
 
@@ -11,28 +11,28 @@ use super::{
 use crate::evidence::Pair;
 use crate::{CampaignFit, Intervals};
 
-/// Whether the answer can be used, and why.
+/// Assessment of a fit: the verdict and its reasons.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AssessmentDocument {
     /// `trust`, `caution` or `do not use`.
     pub verdict: &'static str,
-    /// Why; empty where there is nothing against it.
+    /// Reasons; empty if nothing speaks against the fit.
     pub reasons: Vec<String>,
-    /// χ² by the cycles' own scatter over the degrees of freedom; null where cycles tell of none.
+    /// χ² by the cycles' own scatter over the degrees of freedom; null if cycles show no scatter.
     pub reduced_chi2: Option<f64>,
     /// Left out where the runs are too few for it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub intervals_with_systematics: Option<Intervals>,
     /// The answer that is recommended.
     pub headline: HeadlinePart,
-    /// How well the model explains the runs.
+    /// Goodness of fit.
     pub goodness: GoodnessPart,
     /// Left out where the runs are too few for it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub systematics: Option<SystematicsPart>,
-    /// How r_s and χ move with what is taken for granted.
+    /// Sensitivity of r_s and χ to the assumptions.
     pub budget: Vec<BudgetLine>,
-    /// What explains the runs beside r_s and χ, the likeliest first.
+    /// Alternative explanations of the runs, the most likely first.
     pub explanations: Vec<Explanation>,
     /// Runs that were not fitted.
     pub excluded: Vec<ExcludedPart>,
@@ -48,12 +48,12 @@ pub struct HeadlinePart {
     pub estimate: Pair,
 }
 
-/// How well the model explains the runs.
+/// Goodness of fit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct GoodnessPart {
     /// Values less parameters.
     pub freedom: usize,
-    /// Null where the runs are too few for it, or tell of no scatter.
+    /// Null if there are too few runs, or if they show no scatter.
     pub reduced_chi2_with_systematics: Option<f64>,
     /// Of what the likeliest r_s and χ leave.
     pub signs: Vec<SignTest>,
@@ -78,12 +78,12 @@ pub struct RepeatsPart {
     pub repeats: Repeats,
 }
 
-/// What one run says by itself.
+/// Fit of one run by itself.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RunPart {
     /// Its file.
     pub file: String,
-    /// What it says.
+    /// Goodness of the run's fit.
     #[serde(flatten)]
     pub goodness: RunGoodness,
 }
@@ -94,9 +94,9 @@ pub struct SystematicsPart {
     /// r_s \[m\] and χ.
     #[serde(flatten)]
     pub estimate: Pair,
-    /// What is known by halves, and what the runs make of it.
+    /// Parameters with a prior, and their estimates.
     pub parameters: Vec<Nuisance>,
-    /// What explains the runs better still.
+    /// A better explanation of the runs.
     pub unforeseen: Vec<Unforeseen>,
     /// Values that were left out.
     pub outliers: Vec<OutlierPart>,
@@ -121,7 +121,7 @@ pub struct ExcludedPart {
 }
 
 impl Assessment {
-    /// The document; `name` tells a run's file as people know it.
+    /// The document; `name` returns the name of a run's file for people.
     pub fn document(
         &self,
         found: &CampaignFit,

@@ -1,5 +1,5 @@
-//! What explains the runs beside r_s and χ, each alone and free of what is known, with its likelihood beside the others': a wrong
-//! explanation is told apart by it, or it is not.
+//! Alternative explanations of the runs in addition to r_s and χ, each alone and without its prior. Their likelihoods show
+//! which of them the runs distinguish.
 
 use serde::Serialize;
 
@@ -10,7 +10,7 @@ use crate::fit::parameter::Parameter;
 use crate::fit::run_model::RunModel;
 use crate::fit::tangent::Tangent;
 
-/// What is tried, and from where beside what the files say.
+/// Explanations that are tried: name, parameters, and starts relative to the files.
 const TRIED: [(&str, &[Parameter], &[f64]); 15] = [
     ("gain", &[Parameter::Gain], &[]),
     (
@@ -71,16 +71,16 @@ pub struct Explained {
     pub name: &'static str,
     /// m, rad, or nothing.
     pub unit: &'static str,
-    /// What the files say.
+    /// Value by the files.
     pub before: f64,
-    /// What would explain the runs.
+    /// Value that would explain the runs.
     pub value: f64,
 }
 
 /// Something that may be off.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Explanation {
-    /// What.
+    /// Name.
     pub name: &'static str,
     /// Its parameters.
     pub parameters: Vec<Explained>,

@@ -1,4 +1,4 @@
-//! How well does the model explain the runs? Against the cycles' own scatter, which what all cycles share does not widen.
+//! Goodness of fit, compared with the scatter within the cycles. An error that all cycles share does not widen that scatter.
 
 use serde::Serialize;
 
@@ -25,7 +25,7 @@ pub struct SignTest {
     pub chance: f64,
 }
 
-/// What one run says by itself.
+/// Fit of one run by itself.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct RunGoodness {
     /// Y over X, and its standard error by the run's cycles: a symmetric gait has none.
@@ -36,16 +36,16 @@ pub struct RunGoodness {
     pub turn_rad: [f64; 2],
     /// Chance of a turn so far or further from the model's.
     pub turn_chance: f64,
-    /// What would explain X, and Y, beyond the model: velocity along and across the heading \[m/s\].
+    /// Velocity along and across the heading that would explain X and Y beyond the model \[m/s\].
     pub drift_m_per_s: [f64; 2],
     /// Lengths over those that the other runs foretell, and its standard error: what a wall makes of a run.
     pub scale: Option<[f64; 2]>,
 }
 
-/// How well the model explains the runs.
+/// Goodness of fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Goodness {
-    /// χ² of X, ΔY and Δθ by the cycles' own scatter, over the degrees of freedom; `None` where cycles tell of none.
+    /// χ² of X, ΔY and Δθ by the cycles' own scatter, over the degrees of freedom; `None` if cycles show no scatter.
     pub reduced_chi2: Option<f64>,
     /// Values less parameters.
     pub freedom: usize,
@@ -206,7 +206,8 @@ fn signs(quantity: &'static str, residuals: impl Iterator<Item = f64>) -> SignTe
     }
 }
 
-/// Of at most so many stretches among orders of `a` and `b` signs (Wald and Wolfowitz); where all have one sign, of that.
+/// Probability of at most this many stretches of one sign among all orders of `a` and `b` signs (runs test of Wald and Wolfowitz); of
+/// equal signs if all agree.
 fn chance_of_stretches(a: usize, b: usize, stretches: usize) -> f64 {
     if a == 0 || b == 0 {
         return (0.5_f64).powf((a + b) as f64 - 1.0).min(1.0);
@@ -261,7 +262,7 @@ fn of_run(found: &CampaignFit, plain: &Plain, joint: Option<&Joint>, run: usize)
         let freedom = data.own_within[row(q)].freedom.max(1.0);
         let t = there(q, left(&plain.all.residuals, q) / error(q)).abs();
         if !t.is_finite() {
-            // Not there, or of one cycle, which tells of no scatter.
+            // Missing, or of one cycle, which shows no scatter.
             return f64::NAN;
         }
         student::two_sided(freedom, t)

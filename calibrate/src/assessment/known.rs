@@ -1,4 +1,4 @@
-//! What is known beforehand, and how well: as the campaign states it, else as a careful laboratory knows it.
+//! Priors: as the campaign states them, else the usual widths of a careful laboratory.
 
 use swimmer_files::KnownValue;
 
@@ -15,11 +15,11 @@ const GAIN: f64 = 0.005;
 const OFFSET: f64 = 0.3 * std::f64::consts::PI / 180.0;
 const SCALE: f64 = 0.002;
 
-/// What is known of one parameter.
+/// Prior of one parameter.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Known {
     pub(super) prior: Prior,
-    /// Whether the campaign states it.
+    /// `true` if the campaign states it.
     pub(super) stated: bool,
 }
 
@@ -40,7 +40,7 @@ pub(super) fn priors(found: &CampaignFit, model: &RunModel) -> Vec<Known> {
         .find_map(|run| run.played.sides)
         .map(|sides| sides.reach);
     let link = |joint: usize| reaches.map(|reaches| usual(0.0, reflector / reaches[joint]));
-    // Both reflectors are placed as well as their middle, to a factor that nobody knows.
+    // Both reflectors are placed as well as their middle, to an unknown factor.
     let angle = usual(0.0, std::f64::consts::SQRT_2 * reflector / distance);
     let links = Some(usual(0.0, LINKS));
     let of = |parameter: Parameter, stated: Option<KnownValue>, usual: Option<KnownValue>| {

@@ -1,8 +1,8 @@
 //! The modes of the joint likelihood of runs and of what is known beforehand.
 //!
-//! What is known has heavy tails: what contradicts the runs is believed as much less as it is further off. So there are more modes
-//! than one. In one of them the runs scatter and all is as it is known; in others something is not, and the runs agree. Each thing
-//! known is forgotten in turn, along the model's tangent; the likeliest ends are then followed by the model itself.
+//! Priors have heavy tails: a prior that contradicts the runs loses weight with its distance. So the posterior has several modes.
+//! In one mode the runs scatter and all priors hold. In others a prior does not hold, and the runs agree. Each prior is dropped in
+//! turn, along the model's tangent; the likeliest results are then refined with the model itself.
 
 use super::Plain;
 use super::known::Known;
@@ -17,7 +17,7 @@ use crate::least_squares::{Model as _, weighted};
 
 /// Of how many values one may be left out as unlike the others.
 const VALUES_FOR_ONE: usize = 8;
-/// From so many standard deviations on, what contradicts the runs is believed as much less as it is further off, in so many rounds.
+/// A prior that contradicts the runs by more standard deviations than this loses weight with the distance, in `DOUBTS` rounds.
 const BELIEVED: f64 = 1.5;
 const DOUBTS: usize = 4;
 /// Widths that differ by less are the same, as a share.
@@ -226,7 +226,7 @@ impl JointProblem {
     }
 }
 
-/// How likely a mode is with all that surrounds it (Laplace): a narrow one must be likelier at its top than a wide one.
+/// Weight of a mode with its neighbourhood (Laplace approximation): a narrow mode needs a higher peak than a wide one.
 pub(super) fn evidence(found: &Estimate) -> f64 {
     let Estimate {
         jacobian, weights, ..

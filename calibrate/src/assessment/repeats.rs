@@ -22,7 +22,7 @@ pub struct Repeats {
     pub delta_y_m: [f64; 2],
     /// The same of Δθ \[rad\].
     pub delta_theta_rad: [f64; 2],
-    /// Probability of so much scatter from repeat to repeat, if it were that of the cycles: of the quantity that scatters most.
+    /// Probability of this scatter between repeats, if it were that of the cycles: of the quantity that scatters most.
     pub chance: f64,
 }
 

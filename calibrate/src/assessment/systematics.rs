@@ -1,6 +1,6 @@
-//! r_s and χ where everything that is known by halves may move as far as it is known: the runs and what is known of gains, places
-//! and scales beforehand, weighed in one likelihood. Where the runs know better, they are believed; how far they then contradict
-//! what was known is told in widths.
+//! Estimate of r_s and χ in which parameters with a prior vary within it: one likelihood of the runs and of the priors of gains,
+//! places and scales. If the runs determine a parameter better than its prior, they prevail; the contradiction is given in standard
+//! deviations of the prior.
 
 use serde::Serialize;
 
@@ -18,9 +18,9 @@ use crate::fit::tangent::Tangent;
 use crate::least_squares::{Model as _, minimise};
 use crate::quantities::{NAMES, QUANTITIES};
 
-/// What no file knows, and how much of it would be no surprise (rad, ln, s): tried beside all that is known. It is reckoned with
-/// where the runs are twenty times likelier with it (ln of odds), as it is one of the things that hardly ever are, and so many
-/// standard deviations of its own; above higher odds it is certain.
+/// Errors without a prior, with their plausible sizes (rad, ln, s), tried in addition to the priors. One is included if the runs
+/// are twenty times likelier with it (ln of odds), as such errors are rare, and if it is so many of its own standard deviations from
+/// zero. Above higher odds it counts as certain.
 const UNFORESEEN: [(Parameter, f64); 8] = [
     (Parameter::DeadBand, 5.0 * std::f64::consts::PI / 180.0),
     (Parameter::TangentialDrag, 0.3),
@@ -37,42 +37,42 @@ const UNFORESEEN: [(Parameter, f64); 8] = [
 const LEAST_ODDS: f64 = 3.0;
 pub(super) const CERTAIN_ODDS: f64 = 7.0;
 const TELLING_DEVIATIONS: f64 = 3.0;
-/// How far off the odds may be along the model's tangent.
+/// Tolerance of the odds along the model's tangent.
 const TANGENTS_ERROR: f64 = 7.0;
 /// Least share of what is known that the runs must add before their pull means anything.
 const LEAST_SAID: f64 = 0.02;
 
-/// What the runs make of something that is known by halves.
+/// Estimate of a parameter with a prior.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Nuisance {
     /// Its name.
     pub name: &'static str,
     /// m, rad, or nothing.
     pub unit: &'static str,
-    /// What is known: the value, and its standard deviation.
+    /// Prior: value and standard deviation.
     pub known: [f64; 2],
-    /// Whether the campaign states it.
+    /// `true` if the campaign states the prior.
     pub stated: bool,
-    /// What came out, and its standard deviation.
+    /// Estimate and its standard deviation.
     pub found: [f64; 2],
-    /// How far the runs alone contradict what is known, in standard deviations of that difference.
+    /// Contradiction of the prior by the runs alone, in standard deviations of the difference.
     pub pull: f64,
 }
 
-/// What nobody knew of, and the runs ask for.
+/// Error without a prior that the runs require.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Unforeseen {
     /// Its name.
     pub name: &'static str,
     /// m, rad, or nothing.
     pub unit: &'static str,
-    /// What came out.
+    /// Estimate.
     pub value: f64,
     /// Growth of the log-likelihood.
     pub gain: f64,
-    /// How much likelier the runs are with it than without, ln of odds: with all that surrounds both optima.
+    /// ln of the odds of the runs with and without it, each optimum with its neighbourhood.
     pub log_odds: f64,
-    /// What to do about it.
+    /// Remedy.
     pub remedy: &'static str,
 }
 
@@ -83,9 +83,9 @@ pub struct Systematics {
     pub estimate: Pair,
     /// Their intervals.
     pub intervals: Intervals,
-    /// What else moved.
+    /// Estimates of the parameters with a prior.
     pub nuisances: Vec<Nuisance>,
-    /// What explains the runs better still.
+    /// A better explanation of the runs.
     pub unforeseen: Vec<Unforeseen>,
     /// Values that were left out: run, and the quantity's name.
     pub outliers: Vec<(usize, &'static str)>,
@@ -96,7 +96,7 @@ pub struct Systematics {
 /// The joint likelihood's optimum.
 pub(super) struct Joint {
     known: Vec<Known>,
-    /// r_s, χ, what is known by halves, and what nobody knew of.
+    /// r_s, χ, the parameters with a prior, and errors without one.
     pub(super) parameters: Vec<Parameter>,
     /// Where what is known stands among the values.
     first: usize,
@@ -104,11 +104,11 @@ pub(super) struct Joint {
     pub(super) estimate: Estimate,
     pub(super) tangent: Tangent,
     outliers: Vec<usize>,
-    /// What nobody knew of, last among the parameters.
+    /// Error without a prior, last among the parameters.
     unforeseen: Option<Unforeseen>,
 }
 
-/// What to do about something that nobody knew of.
+/// Remedy for an error without a prior.
 fn remedy(parameter: Parameter) -> &'static str {
     match parameter {
         Parameter::DeadBand => {
@@ -134,7 +134,7 @@ fn remedy(parameter: Parameter) -> &'static str {
 }
 
 impl Joint {
-    /// The likeliest by all that is known, and by one thing more where the runs ask for that; then without what is unlike all else.
+    /// The likeliest modes with all priors, and with one error without a prior if the runs require it; then without outliers.
     pub(super) fn of(plain: &Plain, known: &[Known]) -> Option<Self> {
         let problem = JointProblem::new(plain, known, None);
         let tangent = problem.tangent()?;
@@ -191,7 +191,7 @@ impl Joint {
         })
     }
 
-    /// What it says.
+    /// Estimate, intervals at this level, and nuisance parameters.
     pub(super) fn systematics(&self, plain: &Plain, level: f64) -> Option<Systematics> {
         let length = plain.length();
         let Estimate { at, components, .. } = &self.estimate;

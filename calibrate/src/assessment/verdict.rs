@@ -11,7 +11,7 @@ use crate::fit::parameter::Parameter;
 use crate::fit::{CampaignFit, FitWarning, Intervals, short_name as short};
 use crate::nuisance::scan::ALIKE;
 
-/// What to do with an answer.
+/// Recommendation for the use of a fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
     /// Nothing speaks against it.
@@ -23,7 +23,7 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// As it is told.
+    /// The word that is printed.
     pub fn word(self) -> &'static str {
         match self {
             Self::Trust => "trust",
@@ -314,7 +314,7 @@ fn of_agreement(
     );
 }
 
-/// What is hardly known.
+/// Reasons by poorly determined parameters.
 fn of_widths(
     found: &CampaignFit,
     evidence: Option<&Evidence>,
@@ -351,7 +351,7 @@ fn of_widths(
     }
 }
 
-/// What contradicts what is known.
+/// Reasons by contradictions of the priors.
 fn pulls(systematics: &Systematics, say: &mut impl FnMut(Verdict, String)) {
     for nuisance in &systematics.nuisances {
         let pull = nuisance.pull.abs();
@@ -423,7 +423,7 @@ fn of_explanations(
     }
 }
 
-/// Whether one explanation is the other with the servos apart: `gain` and `gain of each servo`.
+/// Returns `true` if one explanation is the other with separate servos: `gain` and `gain of each servo`.
 fn are_kin(a: &Explanation, b: &Explanation) -> bool {
     a.name.starts_with(b.name) || b.name.starts_with(a.name)
 }
@@ -461,7 +461,7 @@ fn name_the_best(
     reasons.insert(0, (verdict, reason));
 }
 
-/// Explanations that the runs do not tell apart.
+/// Explanations that the runs do not distinguish.
 fn rivals(explanations: &[Explanation], say: &mut impl FnMut(Verdict, String)) {
     let Some(best) = explanations.first().filter(|best| best.gain > EXPLAINS) else {
         return;

@@ -93,7 +93,7 @@ fn difference(a: &Pose<f64>, b: &Pose<f64>) -> [f64; 3] {
 /// Bins of rest that end a stretch of motion: a quarter of a cycle.
 pub(super) const REST: usize = 25;
 
-/// From when to when the robot swam: the longest stretch of motion without so many bins of rest. `lever` \[m\] weighs
+/// Interval in which the robot swam: the longest stretch of motion without this number of bins of rest. `lever` \[m\] weighs
 /// rotation against translation.
 pub(super) fn active(bins: &[Option<Bin>], lever: f64, rest: usize) -> Option<(f64, f64)> {
     let at = |i: usize| bins.get(i).copied().flatten();

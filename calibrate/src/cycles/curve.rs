@@ -30,7 +30,7 @@ pub(crate) struct Curve {
 /// The drift among the terms.
 const DRIFT: usize = 1;
 
-/// How the terms follow the drift, from a Gram matrix's factors.
+/// Coefficients of the terms by the drift, from the factors of a Gram matrix.
 fn following(factors: &Cholesky<f64, Dyn>) -> [f64; TERMS] {
     let unit = DVector::from_fn(TERMS, |i, _| if i == DRIFT { 1.0 } else { 0.0 });
     let column = factors.solve(&unit);
@@ -112,7 +112,7 @@ impl Curve {
         Self { terms, following }
     }
 
-    /// The curve of least squares among those that drift as the means of two cycles do that lie so many cycles apart.
+    /// The least-squares curve that drifts as the means of two cycles do that lie this number of cycles apart.
     ///
     /// Within a cycle drift and the harmonics' sines look much alike, so that noise trades one for the other and bends the
     /// curve at both ends. From one cycle to the next the drift is known far better.

@@ -1,4 +1,4 @@
-//! Why a track gave no cycles.
+//! Reasons for a track without cycles.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use super::LeftOut;
 use super::periodicity::Periodicity;
 use crate::poses::PoseTrack;
 
-/// Why a track gave no cycles.
+/// Reason for a track without cycles.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CycleError {
     /// The robot never moves.
@@ -44,7 +44,7 @@ pub enum CycleError {
     NoCycle {
         /// From when it moves \[s\].
         from_s: f64,
-        /// How long it moves \[s\].
+        /// Duration of the motion \[s\].
         active_s: f64,
         /// The period \[s\].
         period_s: f64,
@@ -53,7 +53,7 @@ pub enum CycleError {
         /// Lost reflectors, if these are why.
         loss: Option<Loss>,
     },
-    /// The heading does not swing, so nothing tells where a cycle starts.
+    /// The heading does not swing, so the start of a cycle is undetermined.
     #[error(
         "the heading does not swing with the period of {period_s:.3} s; check period_s and the gait"
     )]

@@ -1,7 +1,6 @@
-//! Does the heading repeat with the period at all? A wrong period cuts a run into stretches that look clean, each well drawn
-//! by its own harmonics, and a fit to them is wrong and sure of itself. What gives it away is the heading over all of the
-//! run: harmonics of a wrong period leave most of it unexplained, and of several periods only every second or third one is
-//! there.
+//! Check of the period by the heading. A wrong period cuts a run into stretches that look clean, each fitted well by its own
+//! harmonics; the result is wrong, with small errors. The heading over the whole run shows it: harmonics of a wrong period leave
+//! most of it unexplained, and if the period holds several cycles, only every second or third harmonic is there.
 
 // Indices come from bounded, positive numbers.
 #![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
@@ -13,14 +12,14 @@ use super::curve::{HARMONICS, Harmonics};
 use crate::golden::golden;
 use crate::median::median;
 
-/// How well the heading repeats with the period that was told.
+/// Periodicity of the heading at the stated period.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Periodicity {
-    /// The period that was told \[s\].
+    /// The stated period \[s\].
     pub period_s: f64,
-    /// The share of the heading's swing that harmonics of this period explain.
+    /// Share of the heading's swing that harmonics of this period explain.
     pub share: f64,
-    /// The period with which it does repeat \[s\], where one is found.
+    /// The period with which it does repeat \[s\], if the search finds one.
     pub found_s: Option<f64>,
 }
 
@@ -47,30 +46,30 @@ impl fmt::Display for Periodicity {
     }
 }
 
-/// What to make of a heading and a period.
+/// Result of the check.
 pub(super) enum Judgement {
     Fine,
-    /// Worth a word.
+    /// The period is doubtful; the run is used.
     Doubtful(Periodicity),
-    /// Cycles of this period would be none.
+    /// The period is wrong; cycles of it would be meaningless.
     Hopeless(Periodicity),
 }
 
-/// Where harmonics explain this share of the heading, it repeats.
+/// Share of the heading that harmonics explain if it repeats.
 const WELL: f64 = 0.9;
-/// Where they explain no more than this, it does not.
+/// Share up to which it does not repeat.
 const BADLY: f64 = 0.5;
-/// Another period is one, rather than chance, where it leaves at most this share of what the first one leaves.
+/// Another period counts, rather than chance, if it leaves at most this share of the unexplained part.
 const FAR_LESS: f64 = 0.3;
-/// Periods that are looked at: those told, up to so many times longer or shorter.
+/// Range of the search: periods up to this factor longer or shorter.
 const RANGE: f64 = 8.0;
-/// Periods of the run that the search for another one takes: enough to tell, few enough to be quick.
+/// Length of the run in periods that the search uses: enough to distinguish periods, few enough to be quick.
 const SEARCHED: f64 = 24.0;
-/// Of the model's swing at least so much must be in harmonics that the measured one lacks, and of that at most so much may
-/// be there.
+/// Least share of the model's swing in harmonics that the measured heading lacks, and largest share of the measured swing in
+/// them.
 const LACKS: (f64, f64) = (0.5, 0.02);
 
-/// Sums of squares of the heading about its drift, less what noise of the cameras is.
+/// Sums of squares of the heading about its drift, with the part of camera noise.
 struct Swing<'a> {
     bins: &'a [Bin],
     total: f64,
@@ -78,7 +77,7 @@ struct Swing<'a> {
 }
 
 impl<'a> Swing<'a> {
-    /// `None` where the heading shows nothing but noise.
+    /// Returns `None` if the heading shows nothing but noise.
     fn of(bins: &'a [Bin], period_s: f64) -> Option<Self> {
         let (_, total) = harmonic_fit(bins, period_s, 0.0, 0)?;
         // Median of a normal variable's size over its deviation, and six variances in a second difference.
@@ -99,7 +98,7 @@ impl<'a> Swing<'a> {
         1.0 - (rest - self.noise).max(0.0) / (self.total - self.noise)
     }
 
-    /// The shortest period that explains about as much as any does, and how much.
+    /// The shortest period that explains about as much as any, and that share.
     fn best_period(&self, near_s: f64) -> Option<(f64, f64)> {
         let span = self.bins.last()?.time_s - self.bins.first()?.time_s;
         // Three cycles at least: with fewer, harmonics draw any heading that wanders.
@@ -125,8 +124,8 @@ impl<'a> Swing<'a> {
     }
 }
 
-/// Whether the heading repeats with the period. Where the robot's log told the period, a heading that does not fit another
-/// one clearly may have been paused.
+/// Checks that the heading repeats with the period. If the robot's log states the period and no other period fits clearly, the
+/// robot may have been paused.
 pub(super) fn judge(bins: &[Bin], period_s: f64, logged: bool) -> Judgement {
     let Some(whole) = Swing::of(bins, period_s) else {
         return Judgement::Fine;
@@ -157,8 +156,8 @@ pub(super) fn judge(bins: &[Bin], period_s: f64, logged: bool) -> Judgement {
     }
 }
 
-/// Whether a cycle holds several of the model's: then only multiples of their number are among its harmonics, though the
-/// model has others.
+/// Detects a period that holds several cycles of the model: then only multiples of their number are among its harmonics, though
+/// the model has others. Returns `None` if it holds one.
 pub(super) fn several_times(
     measured: &Harmonics,
     model: &Harmonics,

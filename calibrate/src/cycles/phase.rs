@@ -10,7 +10,7 @@ const SLACK: f64 = 0.02;
 /// From the first motion to the first cycle: half of the longest soft start \[s\].
 const SOFT_START_S: f64 = 1.0;
 
-/// What is known of when a run's cycles began, besides its track.
+/// Known starts of a run's cycles, apart from its track.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Timing {
     /// The cameras' time at which a cycle began \[s\]: the flash of the robot's LED.
@@ -21,18 +21,18 @@ pub struct Timing {
     pub clock_offset_s: Option<f64>,
 }
 
-/// How the starts of cycles were found.
+/// Method by which the starts of cycles were determined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Phase {
     /// The heading's harmonics were matched with the model's.
     Heading,
-    /// A flash told one, and the period the others.
+    /// A flash shows one start, and the period the others.
     Flash,
     /// By the robot's log, whose clock was tied to the cameras'.
     Log,
     /// By the robot's log, moved to where the heading's harmonics match the model's.
     LogAndHeading,
-    /// Somebody told X, ΔY and Δθ; there is no track.
+    /// X, ΔY and Δθ are stated; there is no track.
     Told,
 }
 
@@ -88,12 +88,12 @@ pub(super) struct Listed {
     pub(super) starts: Vec<f64>,
     /// Those that the log says were not steady.
     pub(super) unsteady: Vec<f64>,
-    /// Whether the first of `starts` is start-up.
+    /// `true` if the first of `starts` is start-up.
     pub(super) with_start_up: bool,
 }
 
 impl CycleStarts {
-    /// `period_s` is that of the cameras' clock; it and the log's period tell how fast both clocks run.
+    /// `period_s` is that of the cameras' clock; with the log's period it gives the ratio of both clocks.
     pub(super) fn new(timing: &Timing, period_s: f64) -> Self {
         let Some(play) = &timing.play else {
             return timing.cycle_start_s.map_or(Self::Heading, Self::Flash);
@@ -122,7 +122,7 @@ impl CycleStarts {
         }
     }
 
-    /// Whether cycles are the log's, which knows when the robot rested.
+    /// Returns `true` if the cycles come from the log, which shows when the robot rested.
     pub(super) fn has_log(&self) -> bool {
         matches!(self, Self::Log { .. })
     }

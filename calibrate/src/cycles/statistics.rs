@@ -7,19 +7,19 @@ use swimmer_files::ToldValue;
 pub struct Statistics {
     /// Mean.
     pub mean: f64,
-    /// Standard deviation from cycle to cycle; NaN for a single one, which tells of none.
+    /// Standard deviation from cycle to cycle; NaN for a single one, which shows no scatter.
     pub sd: f64,
     /// Standard error of the mean. Neighbouring steps share a cycle, so that noise of the cameras makes them vary against
     /// each other; the lag-1 correlation is taken into account from five values on. NaN for a single one.
     pub se: f64,
-    /// Lag-1 correlation; 0 below five values, NaN where nobody tells it.
+    /// Lag-1 correlation; 0 below five values, NaN if it is unknown.
     pub lag1: f64,
-    /// How many values.
+    /// Number of values.
     pub count: usize,
 }
 
 impl Statistics {
-    /// As somebody told it, of so many cycles; not a number where nobody did.
+    /// Stated value of this number of cycles; NaN if it is not stated.
     pub(crate) fn told(value: Option<&ToldValue>, cycles: Option<usize>) -> Self {
         let nothing = f64::NAN;
         let Some(ToldValue { mean, sd, se }) = value else {

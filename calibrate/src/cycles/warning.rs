@@ -1,10 +1,10 @@
-//! What to know about a run's cycles, and why one was left out.
+//! Warnings about a run's cycles, and reasons to leave one out.
 
 use std::fmt;
 
 use super::periodicity::Periodicity;
 
-/// What to know about a run's cycles.
+/// Warning about a run's cycles.
 #[derive(Debug, Clone, PartialEq)]
 pub enum CycleWarning {
     /// The period differs from the commanded one by more than 0.5 %.

@@ -23,7 +23,7 @@ use crate::student;
 /// From fewer runs it says nothing.
 pub(super) const ENOUGH_RUNS: usize = 5;
 
-/// What is drawn from: one run's values of single cycles about their mean, each quantity in units of its scale.
+/// Population of the bootstrap: one run's values of single cycles about their mean, each quantity in units of its scale.
 #[derive(Debug, Clone)]
 pub(super) struct Drawn {
     pub(super) means: [f64; QUANTITIES],
@@ -33,7 +33,7 @@ pub(super) struct Drawn {
     pub(super) deviations: [Vec<f64>; QUANTITIES],
 }
 
-/// What came of it, in (r_s/L, ln χ).
+/// Estimates, in (r_s/L, ln χ).
 pub(super) struct Bootstrap {
     pub(super) seed: u64,
     pub(super) draws: usize,

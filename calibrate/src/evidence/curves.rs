@@ -5,7 +5,7 @@ use swimmer_files::{AnyGait, SwimmerFile};
 use crate::cycles::Projection;
 use crate::prediction::{JointPath, PredictedCycle};
 
-/// A point every so many degrees.
+/// Spacing of points in degrees.
 const STEP_DEG: u32 = 2;
 /// The largest circle \[deg\].
 const LARGEST_DEG: u32 = 120;
@@ -15,7 +15,7 @@ const LARGEST_DEG: u32 = 120;
 pub struct CurvePoint {
     /// The amplitude ε \[rad\].
     pub amplitude_rad: f64,
-    /// What the model does.
+    /// Cycle by the model.
     pub cycle: PredictedCycle,
 }
 

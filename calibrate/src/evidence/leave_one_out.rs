@@ -1,4 +1,4 @@
-//! What hangs on one run? Each is left out in turn, and what stands out against all others is named.
+//! Influence of single runs: leave-one-out fits, and outliers against all others.
 //!
 //! A value stands out when the fit without it, with variances estimated without it too, predicts something else than was
 //! measured, by more than Student's t allows at 1 % after as many looks as there are values. The worst goes first; then the

@@ -1,4 +1,4 @@
-//! What a finished fit hands on: its data in units of their scales, and a rectangle of (r_s/L, ln χ) to look at.
+//! Likelihood of a finished fit: its data in units of their scales, and a rectangle of (r_s/L, ln χ) to evaluate.
 
 use swimmer_model::Pose;
 
@@ -21,7 +21,7 @@ const LARGEST: [f64; 2] = [0.25, 1.2];
 /// Rectangles that are tried until one holds the estimate.
 pub(super) const RECTANGLES: usize = 5;
 
-/// What is known before the model is asked.
+/// Data and range of the likelihood.
 pub(super) struct LikelihoodProblem {
     pub(super) data: RunValues,
     /// The paper's optimum in (r_s/L, ln χ), and half of its intervals' widths.

@@ -27,14 +27,14 @@ impl Rectangle {
         }
     }
 
-    /// Whether a point lies inside or on the border.
+    /// Returns `true` if a point lies inside or on the border.
     pub(super) fn contains(&self, q: [f64; 2]) -> bool {
         [0, 1]
             .iter()
             .all(|i| (self.low[*i]..=self.high[*i]).contains(&q[*i]))
     }
 
-    /// Whether a point lies well inside; the border r_s = 0 counts as inside.
+    /// Returns `true` if a point lies well inside; the border r_s = 0 counts as inside.
     pub(super) fn holds(&self, q: [f64; 2]) -> bool {
         [0, 1].iter().all(|i| {
             let margin = 0.1 * (self.high[*i] - self.low[*i]);

@@ -1,6 +1,6 @@
-//! What a fit leaves has two causes: errors within runs (`errors.rs`), and something that all cycles of a run share and the next
-//! run does not: the fluid drifted, a reflector was glued on anew. For the second there is one variance for each of X, ΔY,
-//! Δθ, Y and turn, by the method of moments. Both together say how sure the parameters are.
+//! Variance components. Residuals have two causes: errors within runs (`errors.rs`), and errors that all cycles of a run share and
+//! the next run does not, such as drift of the fluid or a reflector that was glued on anew. The second kind has one variance for each
+//! of X, ΔY, Δθ, Y and turn, by the method of moments. Both together give the uncertainty of the parameters.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -75,7 +75,7 @@ impl Components {
         })
     }
 
-    /// Whether residual `row` is a value of a run, and not something known beforehand.
+    /// Returns `true` if residual `row` is a value of a run, and not a prior.
     pub(crate) fn is_of_run(&self, row: usize) -> bool {
         quantity(&self.within, row).is_some()
     }

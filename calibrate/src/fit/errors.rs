@@ -1,4 +1,4 @@
-//! How wrong are X, ΔY and Δθ of a run, as far as its cycles tell?
+//! Errors of X, ΔY and Δθ of a run, estimated from its cycles.
 //!
 //! Their variance comes from as few as four cycles, so it is itself uncertain: the runs' variances are drawn towards what they
 //! have in common, by as much as their own scatter allows (Smyth's moderated variances, Stat. Appl. Genet. Mol. Biol. 3, 2004).
@@ -7,7 +7,7 @@
 //! Steps X of neighbouring cycles share one, so camera noise makes them vary against each other and a drifting tank with each
 //! other; their lag-1 correlation is pooled over the runs.
 //!
-//! What all cycles of a run share does not show here, but in what a fit leaves (`components.rs`).
+//! An error that all cycles of a run share does not show here, but in the residuals of the fit (`components.rs`).
 
 use statrs::function::gamma::digamma;
 
@@ -25,14 +25,14 @@ pub(crate) struct Variance {
 
 /// Relative deviation below which numbers are rounding.
 const ROUNDING: f64 = 1e-12;
-/// Freedom of a variance that is common to all runs as far as anybody can tell.
+/// Degrees of freedom of a variance that is common to all runs, as far as the data show.
 pub(super) const MOST_FREEDOM: f64 = 1e4;
 
 /// Degrees of freedom of a run's variance, at least: its own and those that it shares with other runs.
 const LEAST_FREEDOM: f64 = 3.0;
 
 impl Variance {
-    /// Whether it rests on any scatter or stated error. If not, `value` is a lower bound.
+    /// `true` if the error rests on scatter or on a stated error. If not, `value` is a lower bound.
     pub(crate) fn is_known(self) -> bool {
         self.freedom > 0.0
     }
@@ -138,7 +138,7 @@ pub(crate) fn within_runs(
     out
 }
 
-/// Whether a value came with an error and without cycles.
+/// Returns `true` if a value has an error and no cycles.
 fn states_error(s: &Statistics) -> bool {
     s.sd.is_nan() && s.se.is_finite()
 }
@@ -203,7 +203,7 @@ fn moderated(runs: &[Statistics], floors: &[f64]) -> Vec<Variance> {
     runs.iter().zip(floors).map(posterior).collect()
 }
 
-/// What the runs' variances have in common: a scaled inverse χ² distribution, by the moments of their logarithms.
+/// Common distribution of the runs' variances: scaled inverse χ², by the moments of their logarithms.
 fn prior(samples: &[(f64, f64)]) -> Option<Variance> {
     let count = samples.len() as f64;
     let logs: Vec<f64> = samples

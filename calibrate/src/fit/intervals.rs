@@ -1,4 +1,4 @@
-//! How sure is it? Intervals from the curvature at the optimum.
+//! Confidence intervals from the curvature at the optimum.
 
 use super::components::Components;
 use super::errors::Variance;

@@ -113,7 +113,7 @@ impl Estimate {
         })
     }
 
-    /// How much less likely a point is than the optimum: difference of the logarithms, never above 0.
+    /// Log-likelihood of a point less that of the optimum; never above 0.
     pub(crate) fn log_ratio(&self, model: &impl Model, data: &RunValues, at: &[f64]) -> f64 {
         let Some(values) = model.values(at) else {
             return f64::NEG_INFINITY;

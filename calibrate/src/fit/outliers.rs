@@ -61,7 +61,7 @@ fn unlike(
     })
 }
 
-/// Chance that the largest of so many deviations is so large.
+/// Probability that the largest of this many deviations is this large.
 pub(crate) fn chance(
     others: &Components,
     row: usize,

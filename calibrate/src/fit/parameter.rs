@@ -1,4 +1,4 @@
-//! What can be fitted: r_s, χ, and what else may not be as the files say.
+//! Parameters of a fit: r_s, χ, and the nuisance parameters.
 
 use swimmer_model::Swimmer;
 
@@ -27,11 +27,11 @@ pub(crate) enum Parameter {
     MarkerAcross,
     /// By how much the reflectors' line is turned against the link \[rad\].
     MarkerAngle,
-    /// What the front joint's angle is over that which its link's reflector shows \[rad\].
+    /// Angle of the front joint less the angle of its link's reflector \[rad\].
     FrontLink,
     /// The same of the back joint.
     BackLink,
-    /// What both servos turn over what they are told, less 1.
+    /// Gain of both servos (angle per commanded angle), less 1.
     Gain,
     /// The same of the front servo alone.
     FrontGain,
@@ -86,7 +86,7 @@ impl Parameter {
         }
     }
 
-    /// Whether it moves the joints off what the gait says.
+    /// Returns `true` if the parameter moves the joints off the gait.
     pub(crate) fn moves_joints(self) -> bool {
         matches!(
             self,
@@ -94,7 +94,7 @@ impl Parameter {
         )
     }
 
-    /// Whether it is about what servos make of a command, and nothing where the angles themselves were measured.
+    /// Returns `true` for the servos' response, which has no effect if the angles were measured.
     pub(crate) fn is_of_command(self) -> bool {
         self.moves_joints()
             || matches!(
@@ -103,12 +103,12 @@ impl Parameter {
             )
     }
 
-    /// Whether it is about measured angles, and nothing where there are none.
+    /// Returns `true` for the measurement of angles, which has no effect without measured angles.
     pub(crate) fn is_of_side_links(self) -> bool {
         matches!(self, Self::FrontLink | Self::BackLink)
     }
 
-    /// Whether it is about the view of the cameras, and the direction and place of each run in it.
+    /// Returns `true` for the view of the cameras, which depends on each run's direction and place.
     pub(crate) fn is_of_view(self) -> bool {
         matches!(
             self,

@@ -1,4 +1,4 @@
-//! What is known beforehand of parameters, as measurements beside the runs': the likelihood then weighs both.
+//! Priors of parameters, as additional measurements: the likelihood weighs both.
 
 use nalgebra::DMatrix;
 

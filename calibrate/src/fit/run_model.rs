@@ -1,4 +1,4 @@
-//! What the model says that the runs should have measured, where more than r_s and χ may differ from what the files say.
+//! Model of all runs: predicted values as functions of r_s, χ and the nuisance parameters.
 //!
 //! Cycles were cut where the heading matched a fitted model's; a model with other parameters has another heading, and its
 //! cycles are cut in the same way before they are compared.
@@ -16,7 +16,7 @@ use crate::prediction::{JointPath, Observation, Played, PredictedCycle, SwumCycl
 use crate::quantities::{QUANTITIES, predicted};
 use crate::run::RunResult;
 
-/// Runs that swam nearer to each other \[m\] tell nothing about a lens.
+/// Runs that swam nearer to each other than this \[m\] do not determine a lens.
 const SAME_PLACE: f64 = 0.02;
 
 /// Runs, and the parameters that may differ.
@@ -88,8 +88,8 @@ impl RunModel {
         Self::new(self.start.clone(), runs, self.scales, parameters)
     }
 
-    /// Whether a parameter moves anything: servos do in runs without measured angles, the view of the cameras in tracked runs, and a
-    /// lens in runs that swam at different places.
+    /// Returns `true` if the parameter affects any run: servo parameters need runs without measured angles, camera parameters need
+    /// tracked runs, and lens parameters need runs at different places.
     pub(crate) fn has_use_for(&self, parameter: Parameter) -> bool {
         let measured = |run: &Played| run.sides.is_some();
         let view = |run: &Played| run.view.is_some();
@@ -100,7 +100,7 @@ impl RunModel {
             || parameter == Parameter::Distortion && !self.runs.iter().any(apart))
     }
 
-    /// The same with servos that do as they are told.
+    /// The same model with ideal servos.
     pub(crate) fn with_ideal_servos(&self) -> Self {
         let ideal = |run: &Played| match run.sides {
             Some(_) => run.clone(),
@@ -253,7 +253,7 @@ impl RunModel {
         self.runs.iter().zip(swum).map(see).collect()
     }
 
-    /// Whether a parameter changes only the way that poses are seen.
+    /// Returns `true` if the parameter changes only the view of the poses.
     fn is_only_seen(&self, parameter: Parameter) -> bool {
         let of_marker = matches!(
             parameter,

@@ -1,4 +1,4 @@
-//! What the runs of a fit measured, in the units in which everything compares.
+//! Measured values of the runs of a fit, in common units.
 
 use super::WEIGHTS;
 use super::errors::{RunErrors, Variance, within_runs};
@@ -6,7 +6,7 @@ use crate::cycles::{Cycles, Statistics};
 use crate::error::FitError;
 use crate::quantities::{NAMES, QUANTITIES, TELLING, measured};
 
-/// In whose scale each is told.
+/// Quantity in whose scale each is measured.
 const SCALED_LIKE: [usize; QUANTITIES] = [0, 1, 2, 0, 2];
 
 /// X, ΔY, Δθ, Y and net turn of every run, each in units of its scale.
@@ -22,11 +22,11 @@ pub(crate) struct RunValues {
     pub(crate) within: Vec<Variance>,
     /// The same of each run by itself.
     pub(crate) own_within: Vec<Variance>,
-    /// Which of them count: Y and turn only where they are asked for.
+    /// Values that count: Y and turn only if they are requested.
     pub(crate) used: Vec<bool>,
-    /// Which of them were measured or told.
+    /// Values that were measured or stated.
     there: Vec<bool>,
-    /// Which of these count if they are asked for: all but the later ones of repeats.
+    /// Values that count if they are requested: all but those of later repeats.
     counts: Vec<bool>,
 }
 
@@ -46,7 +46,7 @@ impl RunValues {
             *scale = sizes.fold(0.0, f64::max);
             let there = |run: &[Statistics; QUANTITIES]| run[SCALED_LIKE[q]].mean.is_finite();
             if !statistics.iter().any(there) {
-                // Nobody told it: nothing is in its scale.
+                // Without a value nothing is in its scale.
                 *scale = 1.0;
             }
             if !(*scale > 0.0 && scale.is_finite()) {
@@ -151,7 +151,7 @@ impl RunValues {
         self.counts.push(true);
     }
 
-    /// Whether a value was measured or told at all.
+    /// Returns `true` if the value was measured or stated.
     pub(crate) fn is_there(&self, row: usize) -> bool {
         self.there.get(row).copied().unwrap_or(false)
     }
@@ -168,13 +168,13 @@ impl RunValues {
         self.used.iter().enumerate().map(weigh).collect()
     }
 
-    /// Whether every value that counts has an error, by scatter or as stated.
+    /// Returns `true` if every value that counts has an error, by scatter or as stated.
     pub(crate) fn has_errors(&self) -> bool {
         let mut used = self.within.iter().zip(&self.used);
         used.all(|(within, used)| !used || within.is_known())
     }
 
-    /// How many count.
+    /// Number of values that count.
     pub(crate) fn count(&self) -> usize {
         self.used.iter().filter(|used| **used).count()
     }

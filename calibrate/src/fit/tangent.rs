@@ -1,5 +1,5 @@
-//! A model's tangent: what costs a simulation for each value asked, asked once and then followed along a plane. The likelihood of
-//! a model of many parameters is found by tangents, each laid where the last one's likelihood was largest.
+//! Linearised model: one simulation per parameter gives a tangent plane, on which the likelihood is cheap. The optimum of a model
+//! of many parameters is computed by successive tangents, each at the last one's optimum.
 
 use nalgebra::{DMatrix, DVector};
 

@@ -47,7 +47,7 @@ impl AngleCurve {
     }
 }
 
-/// From (cycle, u, angle) of so many cycles; `None` where the samples do not determine the curve.
+/// Curve of the given cycles by (cycle, u, angle); `None` if the samples do not determine it.
 pub(super) fn fit(
     samples: &[(usize, f64, f64)],
     cycles: usize,
@@ -72,7 +72,7 @@ pub(super) fn fit(
         .iter()
         .fold(nothing, |(gram, right), (g, r)| (gram + g, right + r));
     let solve = |gram: &DMatrix<f64>, right: &DVector<f64>| {
-        // Where samples are missing at the same place of all cycles, harmonics run wild: their Gram matrix tells.
+        // If samples are missing at the same place of all cycles, harmonics are undetermined; their Gram matrix shows it.
         let least = 0.02 * gram[(0, 0)];
         let sound = gram.clone().symmetric_eigenvalues().min() > least;
         let terms = gram.clone().cholesky().filter(|_| sound)?.solve(right);

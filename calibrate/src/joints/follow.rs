@@ -9,7 +9,7 @@ use swimmer_model::wrapped_angle;
 use crate::poses::{Origin, PoseSample, PoseTrack};
 use crate::tracks::TrackFile;
 
-/// How far a point may be from the reflector's distance to the joint, as a share of it.
+/// Largest error of a point's distance to the joint, as a share of the reflector's.
 const DISTANCE: f64 = 0.1;
 /// Largest turn from one row to the next \[rad\], and how fast a link may turn over a gap \[rad/s\].
 const STEP: f64 = 0.3;

@@ -1,4 +1,4 @@
-//! What a servo made of its command: gain, offset, lag and dead band that make the command's course the measured one.
+//! Fit of a servo's response: gain, offset, lag and dead band between command and measured angle.
 
 use nalgebra::{DMatrix, DVector};
 

@@ -1,6 +1,6 @@
-//! Is there a dead band or a servo gain that the swimmer file does not know? Looked for after every fit: first by one difference,
-//! and only where that speaks for another value, by following it. Both make the larger gaits smaller, so what explains the runs
-//! nearly as well as the better one is told beside it.
+//! Scan for a dead band or a servo gain that the swimmer file does not state, after every fit: first by one difference, and only
+//! if that favours another value by refitting. Both reduce the larger gaits, so the warning also names the explanation that is
+//! nearly as good.
 
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
@@ -14,8 +14,8 @@ use crate::golden::golden;
 use crate::least_squares::{Model as _, weighted};
 use crate::quantities::QUANTITIES;
 
-/// What is looked for: how far the first look goes, and the values that are tried, before the golden section refines the best
-/// (dead bands to a twentieth of a degree).
+/// Range and grid of the scan for one parameter. The golden section then refines the best value (dead bands to a twentieth of a
+/// degree).
 struct Scan {
     parameter: Parameter,
     first_look: f64,
@@ -35,7 +35,7 @@ const SCANS: [Scan; 2] = [
     },
 ];
 
-/// Chance at which following is worth while, and at which the find is told. The test takes all values for equally telling,
+/// Significance at which refitting is worth while, and at which the result is reported. The test weighs all values equally,
 /// which they are not: at a nominal 1e-3 one of 98 faultless campaigns was suspected.
 const WORTH_WHILE: f64 = 0.05;
 const CHANCE: f64 = 1e-4;
@@ -43,10 +43,10 @@ const CHANCE: f64 = 1e-4;
 const REFINEMENTS: usize = 9;
 /// Corrections of r_s and χ at each value.
 const CORRECTIONS: usize = 2;
-/// Log-likelihoods that are nearer than this tell nothing apart.
+/// Log-likelihoods that differ by less than this do not distinguish two explanations.
 pub(crate) const ALIKE: f64 = 2.0;
 
-/// What explains the runs better.
+/// A better explanation of the runs.
 struct Find {
     parameter: Parameter,
     known: f64,
@@ -135,7 +135,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// What is left where the parameter has this value and r_s and χ follow it.
+    /// Residuals with the parameter at this value and r_s and χ refitted.
     fn at(&self, value: f64) -> Option<Vec<f64>> {
         let mut z = self.begun.to_vec();
         z[2] = value;
@@ -192,7 +192,7 @@ impl Search<'_> {
         FisherSnedecor::new(1.0, freedom).map_or(1.0, |f| f.sf(((ratio - 1.0) * freedom).max(0.0)))
     }
 
-    /// What is left of `residuals` along a line of them where each quantity is explained best, all weighing alike.
+    /// `residuals` at their minimum along a direction, with equal weight for each quantity.
     fn along(&self, residuals: &[f64], line: &[f64]) -> Vec<f64> {
         let mut squares = [0.0; QUANTITIES];
         for row in self.rows() {

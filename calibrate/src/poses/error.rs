@@ -10,7 +10,7 @@ pub enum PoseError {
     NoPoint {
         /// `front` or `back`.
         reflector: &'static str,
-        /// The name that was asked for.
+        /// The requested name.
         wanted: String,
         /// The names that are there.
         points: String,
@@ -23,7 +23,7 @@ pub enum PoseError {
     NoScale {
         /// The unit.
         unit: crate::Unit,
-        /// The scale at which the reflectors' distance is right, where they can be told.
+        /// The scale at which the reflectors' distance is right, if they can be distinguished.
         scale: Option<f64>,
     },
     /// No rigid body of this name has an orientation in the file.

@@ -1,4 +1,4 @@
-//! Gaps: the samples beside them are not trusted, short ones are filled, and both are marked.
+//! Gaps: the samples next to them are not trusted, short ones are filled, and both are marked.
 //!
 //! A reflector that is about to be hidden is seen in part, and what is seen of it is off its centre: so beside a gap of two
 //! rows and more [`TAIL`] samples on either side become tails, for which the cubic stands in. (One missing row is a lost frame, not a hidden reflector.)
@@ -32,7 +32,7 @@ pub(super) struct Seen {
     pub(super) begins: bool,
 }
 
-/// Marks the samples beside gaps; returns how many.
+/// Marks the samples next to gaps; returns their number.
 pub(super) fn mark_tails(seen: &mut [Seen]) -> usize {
     let hidden = |pair: &[Seen]| match pair {
         [a, b] => b.row - a.row > HIDDEN,

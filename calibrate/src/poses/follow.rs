@@ -22,7 +22,7 @@ use frame_jump::{FrameJump, MOVED};
 use identity::Settled;
 use search::{Candidate, REACH, Search, prepare};
 
-/// How following went.
+/// Report on following the reflectors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FollowReport {
     /// Rows with both reflectors.
@@ -31,7 +31,7 @@ pub struct FollowReport {
     pub missing: usize,
     /// Those of them in which both were held: copies of the row before, digit for digit.
     pub frozen: usize,
-    /// How many stretches there are in which the labels were exchanged, and were set right.
+    /// Number of stretches in which the labels were exchanged, and were corrected.
     pub swaps_repaired: usize,
     /// These stretches.
     pub swaps: Vec<Stretch>,
@@ -45,7 +45,7 @@ pub struct FollowReport {
     pub distance_m: f64,
     /// Its standard deviation \[m\].
     pub distance_sd_m: f64,
-    /// What it is by `at` \[m\].
+    /// Distance by `at` \[m\].
     pub expected_m: f64,
 }
 
@@ -75,7 +75,7 @@ pub struct Stretch {
     pub from_s: f64,
     /// The last of them \[s\].
     pub until_s: f64,
-    /// How many.
+    /// Number.
     pub rows: usize,
 }
 
@@ -108,9 +108,9 @@ pub(super) struct Row {
     pub(super) back: Vector3<f64>,
     /// Labels agree (`true`), contradict, or say nothing.
     labels: Option<bool>,
-    /// How far both were from their predicted places \[m\].
+    /// Distance of both from their predicted positions \[m\].
     miss: Option<f64>,
-    /// Whether a segment begins with it.
+    /// `true` if a segment begins with it.
     pub(super) begins: bool,
 }
 
@@ -133,7 +133,7 @@ pub(super) struct Followed<'a> {
 const SMOOTHING_S: f64 = 0.2;
 /// Longest gap before a speed is known \[s\].
 const FIRST_GAP_S: f64 = 1.0;
-/// How near to a cubic a lone point must be to be the reflector, over the reflectors' distance: what 0.1 s of a fast gait bend.
+/// Tolerance of a lone point about a cubic, over the reflectors' distance: the bend of a fast gait in 0.1 s.
 const NEAR: f64 = 0.05;
 
 /// Place and velocity of a reflector.
@@ -202,7 +202,7 @@ pub(super) fn follow<'a>(
         return rigid::follow(track, reflectors, body, expected_m);
     }
     let mut search = prepare(track, reflectors, expected_m, options)?;
-    // The first pass tells the distance, and how much it and predictions vary.
+    // The first pass determines the distance, and its scatter and that of predictions.
     let rows = walk(&search).0;
     search.learn(&rows);
     drop(rows);
@@ -236,7 +236,7 @@ pub(super) fn follow<'a>(
     Ok(followed)
 }
 
-/// What is known of the row before.
+/// State of the previous row.
 struct State {
     time: f64,
     front: Motion,
@@ -341,7 +341,7 @@ impl State {
     }
 }
 
-/// Whether a candidate is nearer to a point that was no reflector than to where the reflectors ought to be.
+/// Returns `true` if a candidate is nearer to a point that was no reflector than to the reflectors' predicted positions.
 fn is_other(
     at: &Vector3<f64>,
     front: &Vector3<f64>,
@@ -386,7 +386,7 @@ fn next(
     })
 }
 
-/// Counts what was followed in so many segments.
+/// Counts the followed rows of this number of segments.
 fn settle(search: Search<'_>, settled: Settled, segments: usize, expected_m: f64) -> Followed<'_> {
     let frames = search.track.frames();
     let mut kept = settled.rows;

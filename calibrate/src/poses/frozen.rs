@@ -47,7 +47,7 @@ pub(super) fn take_frozen(rows: &mut Vec<Row>) -> Frozen {
     }
 }
 
-/// Stretches (first copy, first row that is none).
+/// Stretches (first copy, first row that is no copy).
 fn copies(rows: &[Row]) -> Vec<(usize, usize)> {
     let way = |a: &Row, b: &Row| (b.front - a.front).norm().hypot((b.back - a.back).norm());
     let mut same: Vec<(usize, usize)> = Vec::new();

@@ -1,5 +1,5 @@
 //! Jumps of the pose: the tank's frame was moved (a camera was bumped, the system calibrated anew), or the robot was lifted.
-//! What lies before and after is good, but nothing that spans the jump is.
+//! Samples before and after a jump are good, but nothing that spans it is.
 
 use swimmer_model::Pose;
 
@@ -13,7 +13,7 @@ pub struct Jump {
     pub before_s: f64,
     /// The first sample after it \[s\].
     pub after_s: f64,
-    /// How far the middle link's centre was moved \[m\].
+    /// Displacement of the middle link's centre \[m\].
     pub moved_m: f64,
     /// By how much it was turned \[rad\].
     pub turned_rad: f64,

@@ -15,7 +15,7 @@ pub struct Plane {
     pub y: Vector3<f64>,
     /// Root mean square distance of the points from it \[m\].
     pub rms_m: f64,
-    /// Whether the points determine it; if not, it is the coordinate plane that they leave least.
+    /// `true` if the points determine the plane; if not, it is the coordinate plane that they leave least.
     pub fitted: bool,
     /// Which of the file's axes x and y are nearest to, and which the normal: `(x, y) = (Z, X), normal Y`.
     pub map: String,

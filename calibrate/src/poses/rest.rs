@@ -1,4 +1,4 @@
-//! How the robot moves while it rests: before its cycles and after them, only the fluid moves it (or the frame of the cameras).
+//! Drift of the resting robot: before and after its cycles only the fluid moves it, or the frame of the cameras.
 
 use nalgebra::Vector2;
 
@@ -12,17 +12,17 @@ pub struct Drift {
     pub velocity_m_s: [f64; 2],
     /// Standard error of either \[m/s\].
     pub error_m_s: f64,
-    /// How long the robot was seen at rest \[s\].
+    /// Duration of the rest \[s\].
     pub rest_s: f64,
 }
 
-/// Rests that are shorter tell nothing \[s\].
+/// Least duration of a rest that is used \[s\].
 const LEAST_S: f64 = 0.8;
-/// What is left out beside the motion \[s\].
+/// Margin next to the motion that is left out \[s\].
 const MARGIN_S: f64 = 0.2;
 /// Deviations of the noise within which a heading stands, and a centre goes straight.
 const STANDS: f64 = 5.0;
-/// Samples that tell a place before the first motion.
+/// Number of samples that determine a position before the first motion.
 const FIRST: usize = 7;
 
 /// Velocity, its variance, seconds.

@@ -1,10 +1,10 @@
-//! What to know about poses.
+//! Warnings about poses.
 
 use std::fmt;
 
 use super::{Jump, Stretch};
 
-/// What made the poses less than perfect.
+/// Warning about poses.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PoseWarning {
     /// The reflectors' distance differs from what `at` says by more than 2 %.
@@ -21,7 +21,7 @@ pub enum PoseWarning {
     },
     /// The points lie nearly on a line, so the plane is an axis plane of the file rather than a fitted one.
     PlaneAssumed,
-    /// After a gap nobody could tell front from back; the rows before or after it are left out.
+    /// After a gap front and back could not be distinguished; the rows before or after it are left out.
     AmbiguousGaps {
         /// Segments that were left out.
         segments: usize,
@@ -42,7 +42,7 @@ pub enum PoseWarning {
     },
     /// The pose jumps as no robot can.
     Jumps(Vec<Jump>),
-    /// The names of front and back are exchanged for so much of the run that nobody can say which are the right ones.
+    /// The names of front and back are exchanged in such a share of the run that the right ones are undetermined.
     LabelsContested {
         /// Where those are that fewer rows have.
         stretches: Vec<Stretch>,
@@ -51,7 +51,7 @@ pub enum PoseWarning {
     },
 }
 
-/// Jumps that are told one by one.
+/// Jumps that are listed one by one.
 const MOST_JUMPS: usize = 3;
 
 impl fmt::Display for PoseWarning {

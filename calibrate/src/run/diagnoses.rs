@@ -1,4 +1,4 @@
-//! What is noteworthy about one run's track, in a few words each.
+//! Short diagnoses of one run's track.
 
 use super::RunResult;
 use crate::poses::Stretch;
@@ -6,7 +6,7 @@ use crate::poses::Stretch;
 /// Reflectors whose distance differs by more from what `at` says are worth a word, as a share.
 const FAR: f64 = 0.01;
 
-/// Stretches whose times are told; JSON has all.
+/// Number of stretches whose times are printed; JSON lists all.
 const TOLD: usize = 4;
 
 /// When stretches were.

@@ -1,4 +1,4 @@
-//! A run of a campaign, tracked or told, as the fit goes round with it.
+//! A run of a campaign, with a track or with stated results, during the fit.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use crate::error::CalibrateError;
 use crate::fit::errors::RunErrors;
 use crate::prediction::Played;
 
-/// Tracked or told.
+/// A run with a track or with stated results.
 pub(crate) enum EitherRun<'a> {
     Tracked(Box<Run<'a>>),
     Told(Box<Told>),
@@ -74,7 +74,7 @@ impl EitherRun<'_> {
         }
     }
 
-    /// Whether X has the other sign than the model's, and about its size.
+    /// Returns `true` if X has the opposite sign of the model's, and about its size.
     pub(crate) fn opposes(
         &self,
         cycles: &Cycles,

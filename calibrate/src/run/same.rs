@@ -26,7 +26,7 @@ pub(crate) fn same_recordings(runs: &[RunResult]) -> Vec<[usize; 2]> {
     runs.iter().enumerate().filter_map(pair).collect()
 }
 
-/// Whether samples of the same times have the same poses.
+/// Returns `true` if samples of the same times have the same poses.
 fn share_poses(a: &PoseTrack, b: &PoseTrack) -> bool {
     let step = (a.samples.len() / COMPARED).max(1);
     let compared: Vec<&PoseSample> = a.seen().step_by(step).collect();
@@ -44,7 +44,7 @@ fn share_poses(a: &PoseTrack, b: &PoseTrack) -> bool {
     !compared.is_empty() && count as f64 >= EQUAL * compared.len() as f64
 }
 
-/// Whether at least half of the cycles of the shorter run are cycles of the other one.
+/// Returns `true` if at least half of the cycles of the shorter run are cycles of the other one.
 fn share_cycles(a: &Cycles, b: &Cycles) -> bool {
     let tolerance = |value: fn(&Cycles) -> Statistics| {
         let [a, b] = [value(a), value(b)];

@@ -1,4 +1,4 @@
-//! A run whose results somebody told: nothing to follow, to cut or to measure.
+//! A run with stated results: nothing is followed, cut or measured.
 
 use std::path::PathBuf;
 
@@ -11,7 +11,7 @@ use crate::fit::errors::RunErrors;
 use crate::poses::PoseTrack;
 use crate::prediction::Played;
 
-/// What was told of a run, and of what gait.
+/// Stated results of a run, and its gait.
 pub(crate) struct Told {
     index: usize,
     pub(super) file: PathBuf,

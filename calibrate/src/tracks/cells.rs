@@ -74,7 +74,7 @@ impl Cells {
         line.text.get(start as usize..end as usize)
     }
 
-    /// Whether anything stands in or behind this column.
+    /// Returns `true` if this column or a later one is not blank.
     pub(super) fn any_from(&self, line: &Line<'_>, column: usize) -> bool {
         (column..self.len()).any(|column| !self.at(line, column).raw.is_empty())
     }

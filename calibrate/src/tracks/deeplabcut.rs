@@ -40,7 +40,7 @@ pub(super) fn read(
     let name = |column: usize| {
         let part = cell_at(parts, column).text().into_owned();
         match individuals.map(|cells| cell_at(cells, column).text()) {
-            // Parts that belong to none of several animals.
+            // Parts that belong to no single animal.
             Some(animal) if !animal.is_empty() && animal != "single" => format!("{animal}:{part}"),
             _ => part,
         }

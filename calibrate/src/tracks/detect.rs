@@ -41,7 +41,7 @@ pub(super) enum Detected {
 /// Where a table's header is, and what separates its cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct TableLayout {
-    /// What separates the cells.
+    /// Delimiter of the cells.
     pub(super) delimiter: Delimiter,
     /// The header's line number.
     pub(super) header_line: usize,
@@ -58,8 +58,10 @@ const RECORD_WORDS: [&str; 7] = [
     "frame",
 ];
 
+/// Returns the format of a file.
+///
 /// # Errors
-/// What keeps the file from being any known format.
+/// [`TrackError`]: a file that matches no known format.
 pub(super) fn detect(lines: &Lines<'_>, file: &Path) -> Result<Detected, TrackError> {
     let mut head = lines.head().filter(|line| !line.is_blank());
     let Some(first) = head.next() else {
@@ -148,7 +150,7 @@ fn by_first_lines(first: &Line<'_>, below: &[Line<'_>], file: &Path) -> Option<D
     })
 }
 
-/// What separates the fields of record lines, where these are such: the character behind the first word.
+/// Returns the delimiter of record lines, the character after the first word; `None` for other lines.
 fn records_delimiter(lines: &Lines<'_>, first: &Line<'_>) -> Option<Delimiter> {
     let text = first.text.trim_start_matches(['"', ' ']);
     let word = RECORD_WORDS.iter().find(|word| text.starts_with(**word))?;

@@ -1,4 +1,4 @@
-//! What can be wrong with a tracking file, and where.
+//! Errors of tracking files, with file, line and column.
 
 use std::fmt;
 use std::io;
@@ -29,7 +29,7 @@ pub enum TrackError {
     Broken {
         /// Where.
         place: Place,
-        /// What is wrong.
+        /// The problem.
         problem: TrackProblem,
     },
     /// A format that is recognised, but that there is no reader for.
@@ -60,7 +60,7 @@ pub enum TrackError {
     Unrecognised {
         /// The file.
         file: PathBuf,
-        /// How it begins.
+        /// First characters of the file.
         beginning: String,
     },
     /// There is nothing in it.
@@ -71,7 +71,7 @@ pub enum TrackError {
     },
 }
 
-/// How to get text instead of a binary format.
+/// Way to export text instead of a binary format.
 fn text_export(format: &str) -> &'static str {
     match format {
         "hdf5" => {
@@ -111,7 +111,7 @@ impl TrackError {
     }
 }
 
-/// What is wrong with a line.
+/// Problem of a line.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TrackProblem {
     /// A quote opens and never closes on its line.
@@ -125,10 +125,10 @@ pub enum TrackProblem {
     NotANumber {
         /// The cell's text.
         text: String,
-        /// What the cell is.
+        /// Expected content of the cell.
         cell: String,
     },
-    /// A frame number is none.
+    /// A frame number is invalid.
     #[error("`{text}` is not a frame number")]
     NotAFrameNumber {
         /// The cell's text.
@@ -173,7 +173,7 @@ pub enum TrackProblem {
     /// The second column is not the time.
     #[error("the column after `Frame` is `{text}`, not `Time`")]
     NoTimeColumn {
-        /// What it is.
+        /// The text.
         text: String,
     },
     /// The first row lacks a key.
@@ -191,13 +191,13 @@ pub enum TrackProblem {
     /// A frame rate is no positive number.
     #[error("`{text}` is not a frame rate in hertz")]
     Rate {
-        /// What it says.
+        /// The text.
         text: String,
     },
     /// Positions relative to a body are of no use here.
     #[error("the coordinate space is `{text}`; export again with coordinate space Global")]
     CoordinateSpace {
-        /// What it says.
+        /// The text.
         text: String,
     },
     /// A point lacks one of its axes.
@@ -214,10 +214,10 @@ pub enum TrackProblem {
     /// A table needs to know when.
     #[error("no column is called t, time or frame, so the rate is unknown; name one of them")]
     NoTime,
-    /// A column that was asked for is not there.
+    /// A requested column is missing.
     #[error("there is no column `{name}`; the columns are {columns}")]
     NoColumn {
-        /// The name that was asked for.
+        /// The requested name.
         name: String,
         /// The columns that are there.
         columns: String,
@@ -245,7 +245,7 @@ pub enum TrackProblem {
         /// The limit \[MiB\].
         megabytes: usize,
     },
-    /// A record's fields are not as many as its own counts ask for.
+    /// The number of a record's fields contradicts its own counts.
     #[error(
         "this `{word}` record has {fields} fields where its own counts ask for {expected}; it was cut, or its counts are wrong"
     )]
@@ -254,7 +254,7 @@ pub enum TrackProblem {
         word: String,
         /// Fields that are there.
         fields: usize,
-        /// Fields that its counts ask for.
+        /// Number of fields by its counts.
         expected: usize,
     },
     /// A line that begins with no record word.
@@ -262,7 +262,7 @@ pub enum TrackProblem {
         "`{text}` begins no record; the words are comment, righthanded, lefthanded, info, trackable, rigidbody and frame"
     )]
     UnknownRecord {
-        /// How it begins.
+        /// First characters.
         text: String,
     },
     /// A field that counts or numbers something is no whole number.
@@ -270,10 +270,10 @@ pub enum TrackProblem {
     NotACount {
         /// The field's text.
         text: String,
-        /// What it is.
+        /// The text.
         field: &'static str,
     },
-    /// A version of the record family that nobody has seen.
+    /// An unknown version of the record family.
     #[error("record lines of version {version} are not known; known are 1.0 and 1.1")]
     RecordVersion {
         /// The version.

@@ -47,7 +47,7 @@ pub(super) enum Clock {
 pub(super) struct Columns {
     /// x, y and perhaps z.
     pub(super) axes: [Option<usize>; 3],
-    /// How sure the tracker was.
+    /// Column of the tracker's likelihood.
     pub(super) likelihood: Option<usize>,
     /// The body's orientation.
     pub(super) rotation: Option<Rotation>,
@@ -63,7 +63,7 @@ impl Columns {
     }
 }
 
-/// What a header said about the rows below it.
+/// Layout of the rows below a header.
 pub(super) struct Grid {
     pub(super) delimiter: Delimiter,
     /// Cells in a row; blank ones may follow.
@@ -71,20 +71,20 @@ pub(super) struct Grid {
     /// The header's last line, which the rows follow; 0 where there is no header.
     pub(super) header_line: usize,
     pub(super) clock: Clock,
-    /// Metres per unit; 1 where nobody knows.
+    /// Metres per unit; 1 if it is unknown.
     pub(super) metres: f64,
     pub(super) points: Vec<TrackPoint>,
     /// For each point.
     pub(super) columns: Vec<Columns>,
     /// The least likelihood that counts.
     pub(super) likelihood: f64,
-    /// Whether a point at the very origin is a missing one (QTM).
+    /// `true` if a point at the very origin is a missing one (QTM).
     pub(super) origin_is_missing: bool,
-    /// Whether lines that begin with # or % are comments.
+    /// `true` if lines that begin with # or % are comments.
     pub(super) comments: bool,
-    /// Whether a blank line ends the section (Vicon).
+    /// `true` if a blank line ends the section (Vicon).
     pub(super) section: bool,
-    /// Whether nothing says the unit of angles, so that one beyond a whole turn is not taken for radians.
+    /// `true` if no unit of angles is stated, so that one beyond a whole turn is not taken for radians.
     pub(super) short_angles: bool,
 }
 
@@ -175,7 +175,7 @@ struct Reader<'f> {
     body: Body,
     /// Where frame numbers failed: a stamp and the time that was given to it. From there on stamps count.
     stamps_from: Option<(f64, f64)>,
-    /// Whether the rate is the user's, to which the time column need not keep.
+    /// `true` if the rate is the user's, from which the time column may differ.
     rate_is_given: bool,
     last_decimals: usize,
     extent: Option<usize>,
@@ -504,7 +504,7 @@ pub(super) fn may_be_cut(line: &Line<'_>, shorter: bool, file: &Path) -> Result<
     Err(line.error(file, line.text.len(), TrackProblem::MayBeCut))
 }
 
-/// What follows the decimal sign, an exponent too, in characters: programs write all numbers of a column alike.
+/// Number of characters after the decimal sign, with the exponent: programs write all numbers of a column alike.
 pub(super) fn decimals(text: &str) -> usize {
     text.rsplit_once(['.', ','])
         .map_or(0, |(_, digits)| digits.len())

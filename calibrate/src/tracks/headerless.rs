@@ -12,7 +12,7 @@ use super::{
 
 /// Rows that are looked at for rotations.
 const LOOKED_AT: usize = 50;
-/// How near to 1 the square of a rotation's four numbers is: they are written with six digits.
+/// Tolerance of the squared norm of a rotation's four numbers: they are written with six digits.
 const UNIT_LENGTH: f64 = 1e-4;
 
 /// # Errors

@@ -44,7 +44,7 @@ struct Sections<'r> {
     tracks: Vec<(String, Vec<Seen>)>,
     /// The comment that names the next section.
     name: Option<String>,
-    /// Whether a section goes on.
+    /// `true` within a section.
     open: bool,
     rows: usize,
     last_decimals: usize,

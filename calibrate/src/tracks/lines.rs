@@ -13,7 +13,7 @@ const HEAD_LINES: usize = 400;
 /// Where lines are long, fewer are kept: of a wide header's 41 rows all, and no more once they are this large \[bytes\].
 const HEAD: (usize, usize) = (50, 4 << 20);
 
-/// What stands between two cells.
+/// Delimiter between two cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Delimiter {
     /// A comma.
@@ -61,12 +61,12 @@ pub(super) struct Line<'a> {
     pub(super) number: usize,
     /// Without its end.
     pub(super) text: &'a str,
-    /// Whether the file goes on after it (a line's end was there).
+    /// `true` if the line is terminated, so that the file continues.
     pub(super) ended: bool,
 }
 
 impl Line<'_> {
-    /// Whether nothing but delimiters and spaces is on it.
+    /// Returns `true` if the line holds only delimiters and spaces.
     pub(super) fn is_blank(&self) -> bool {
         self.text
             .bytes()

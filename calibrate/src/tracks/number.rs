@@ -6,7 +6,7 @@ use super::cells::Cell;
 use super::lines::{Delimiter, Line};
 use super::{TrackError, TrackProblem};
 
-/// What a cell that should hold a number says.
+/// Content of a cell that should hold a number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Number {
     /// A finite number.
@@ -39,7 +39,7 @@ impl Decimals {
         }
     }
 
-    /// What a cell says; may settle the sign.
+    /// Parses a cell; may determine the decimal sign.
     pub(super) fn number(&mut self, text: &str) -> Number {
         if *self == Self::Point {
             return number(text, false);
@@ -116,7 +116,7 @@ fn plain(bytes: &[u8]) -> Option<f64> {
     Some(if negative { -value } else { value })
 }
 
-/// What a cell says when a comma is a decimal sign (`decimal_comma`) or is none.
+/// Parses a cell, in which a comma is a decimal sign if `decimal_comma`.
 pub(super) fn number(text: &str, decimal_comma: bool) -> Number {
     if let Some(value) = plain(text.as_bytes()) {
         return Number::Finite(value);

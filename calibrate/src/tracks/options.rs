@@ -1,4 +1,4 @@
-//! What the user knows about a recording and the file does not say.
+//! Options of the reader: facts about a recording that its file does not state.
 
 use swimmer_files::{Axes, PointName, Reflectors};
 
@@ -6,7 +6,7 @@ use super::{TrackError, TrackPoint, TrackProblem, TrackWarning, Unit};
 use crate::tracks::lines::Line;
 use std::path::Path;
 
-/// What the user knows about a recording and the file does not say.
+/// Facts about a recording that its file does not state.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct TrackOptions {
     /// Metres per unit of the file (per pixel); `None` where the file says its unit.
@@ -19,7 +19,7 @@ pub struct TrackOptions {
     pub likelihood: Option<f64>,
     /// Further points of a table by the names of their x and y columns; each is named `x,y`.
     pub pairs: Vec<[String; 2]>,
-    /// What the poses will be taken from: places of other points need not be kept. `None` keeps all.
+    /// Points that the poses will be taken from: positions of other points need not be kept. `None` keeps all.
     pub used: Option<UsedPoints>,
 }
 
@@ -43,13 +43,13 @@ pub struct TrackOptions {
 pub struct UsedPoints {
     /// Names of the reflectors on the middle link, or of the rigid body alone.
     pub middle: Vec<PointName>,
-    /// Whether the middle link is a rigid body.
+    /// `true` if the middle link is a rigid body.
     pub is_body: bool,
-    /// Whether the names are only the usual ones, so that other points are needed if they are missing.
+    /// `true` if the names are only the usual ones, so that other points are needed if they are missing.
     pub is_guess: bool,
     /// Names of the reflectors on the side links.
     pub sides: Vec<PointName>,
-    /// How far apart the reflectors on the middle link are \[m\].
+    /// Distance of the reflectors on the middle link \[m\].
     pub distance_m: f64,
 }
 
@@ -83,19 +83,19 @@ impl UsedPoints {
         }
     }
 
-    /// Whether the point goes by one of the names.
+    /// Returns `true` if the point has one of the names.
     pub(super) fn names(&self, point: &TrackPoint) -> bool {
         let mut names = self.middle.iter().chain(&self.sides);
         names.any(|name| point.goes_by(name))
     }
 
-    /// Whether the point's places may be needed at all.
+    /// Returns `true` if the point's positions may be needed.
     pub(super) fn may_need(&self, point: &TrackPoint) -> bool {
         let measured = point.kind.is_measured() && !(self.is_body && self.sides.is_empty());
         self.names(point) || measured || (self.is_guess && point.is_oriented())
     }
 
-    /// Whether each of these points is there, so that others matter only close to them.
+    /// Returns `true` if each of these points is in the file, so that others matter only close to them.
     pub(super) fn are_in(&self, points: &[TrackPoint]) -> bool {
         let mut names = self.middle.iter().chain(&self.sides);
         names.all(|name| points.iter().any(|point| point.goes_by(name)))
@@ -103,7 +103,7 @@ impl UsedPoints {
 }
 
 impl TrackOptions {
-    /// The unit that holds, its metres (1 where nobody knows), and a warning where the user's overrides the file's.
+    /// The unit that applies, its metres (1 if unknown), and a warning if the user's overrides the file's.
     pub(super) fn unit(&self, own: Unit) -> (Unit, f64, Option<TrackWarning>) {
         let given = self
             .metres_per_unit
@@ -135,7 +135,7 @@ impl TrackOptions {
         (used_hz, warning)
     }
 
-    /// The same where nothing else can tell it.
+    /// The user's rate, or an error if nothing states one.
     pub(super) fn need_rate(&self, line: &Line<'_>, file: &Path) -> Result<f64, TrackError> {
         self.rate()
             .ok_or_else(|| line.error(file, 0, TrackProblem::NoRate))

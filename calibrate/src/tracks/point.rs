@@ -5,7 +5,7 @@ use std::fmt;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use swimmer_files::PointName;
 
-/// What a group of columns is.
+/// Type of a group of columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum PointKind {
     /// A measured marker that the tracker has a name for.
@@ -21,7 +21,7 @@ pub enum PointKind {
 }
 
 impl PointKind {
-    /// What a marker of this name is.
+    /// Type of a marker by its name.
     pub(super) fn of_marker(name: &str) -> Self {
         if is_unlabeled(name) {
             Self::Unlabeled
@@ -30,7 +30,7 @@ impl PointKind {
         }
     }
 
-    /// Whether a camera saw this point itself.
+    /// Returns `true` if cameras saw this point itself.
     pub fn is_measured(self) -> bool {
         matches!(self, Self::Marker | Self::Unlabeled)
     }
@@ -61,15 +61,15 @@ fn is_unlabeled(name: &str) -> bool {
 pub struct TrackPoint {
     /// Its name, as in the file (without quotes).
     pub name: String,
-    /// What it is.
+    /// Type.
     pub kind: PointKind,
     /// Its ID in the file; empty where the file has none.
     pub id: String,
     /// The names of its columns in a plain table (x, y and perhaps z); empty otherwise.
     pub columns: Vec<String>,
-    /// Whether places are kept, or only counted.
+    /// `true` if positions are kept, `false` if they are only counted.
     keeps: bool,
-    /// Whether the file gives its orientation.
+    /// `true` if the file gives its orientation.
     oriented: bool,
     presence: Presence,
     /// First row and first place of each run of rows in which it is there. Markers come and go: what is missing costs nothing.
@@ -121,13 +121,13 @@ impl TrackPoint {
         self
     }
 
-    /// Whether the file gives the point's orientation.
+    /// Returns `true` if the file gives the point's orientation.
     pub fn is_oriented(&self) -> bool {
         self.oriented
     }
 
-    /// Whether this is one of the names by which the user may call the point: its own, the part behind an asset's name and a colon,
-    /// or its columns.
+    /// Returns `true` if the user may call the point by this name: its own, the part after an asset's name and a colon, or its
+    /// columns.
     pub(crate) fn goes_by(&self, name: &PointName) -> bool {
         match name {
             PointName::Named(name) => self.is_called(name),
@@ -138,7 +138,7 @@ impl TrackPoint {
         }
     }
 
-    /// Whether the point goes by this name: its own, or the part behind an asset's name and a colon.
+    /// Returns `true` if the point has this name: its own, or the part after an asset's name and a colon.
     pub(crate) fn is_called(&self, name: &str) -> bool {
         let asset = self.name.rsplit_once(':');
         self.name == name || asset.is_some_and(|(_, last)| last == name)
@@ -176,7 +176,7 @@ impl TrackPoint {
         self.presence.present
     }
 
-    /// How many runs of rows it is missing in.
+    /// Number of gaps.
     pub fn gaps(&self) -> usize {
         self.presence.gaps
     }

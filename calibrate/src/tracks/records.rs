@@ -79,7 +79,7 @@ struct Reader {
     frames: Option<u64>,
     timeline: Timeline,
     keeps_places: bool,
-    /// What poses will be taken from, if that is known.
+    /// Points that poses will be taken from, if known.
     used: Option<UsedPoints>,
     /// Frames that are not in the file: how often, how many.
     skipped: (usize, u64),
@@ -90,7 +90,7 @@ struct Reader {
     seen: Seen,
     /// Poses that went to a body of another number, and poses that no body's markers explain.
     renumbered: (usize, usize),
-    /// Whether no body was defined before the first frame.
+    /// `true` if no body was defined before the first frame.
     undefined: bool,
     /// Points of a frame's markers: by place in the list (1.0) or by number (1.1).
     markers: HashMap<String, usize>,

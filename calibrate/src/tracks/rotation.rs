@@ -3,7 +3,7 @@
 
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
-/// How far a quaternion's norm, or the columns of a rotation matrix, may be from 1: files have four digits at least.
+/// Tolerance of a quaternion's norm and of the columns of a rotation matrix: files have four digits at least.
 const TOLERANCE: f64 = 0.02;
 
 /// Columns that hold an orientation.

@@ -10,13 +10,13 @@ pub(super) trait TakesRows {
     /// A line that is not blank: taken whole or not at all.
     fn take_line(&mut self, line: &Line<'_>) -> Result<(), TrackError>;
 
-    /// Whether any row was taken yet.
+    /// Returns `true` after the first row.
     fn has_rows(&self) -> bool;
 
     /// A blank line.
     fn blank(&mut self) {}
 
-    /// Whether a blank line ends the rows.
+    /// Returns `true` if a blank line ends the rows.
     fn ends_at_blank(&self) -> bool {
         false
     }

@@ -1,5 +1,5 @@
 //! SLEAP's analysis CSV: `track,frame_idx,instance.score`, then `node.x,node.y,node.score` of each node; one row for each animal
-//! in each frame. Pixels, y down. Nodes that SLEAP did not find are blank; a least score counts only where one is asked for.
+//! in each frame. Pixels, y down. Nodes that SLEAP did not find are blank; a least score counts only if the user states one.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -138,7 +138,7 @@ struct Instances<'r> {
     /// Jumps, and frames that they leave out.
     skipped: (usize, u64),
     unlikely: usize,
-    /// How many positions lack an axis, and the first line with one.
+    /// Number of positions without an axis, and the first line with one.
     half_blank: Option<(usize, usize)>,
     last_decimals: usize,
 }
@@ -217,7 +217,7 @@ impl Instances<'_> {
         self.decimals.cell(&cell, (line, self.reading.file), "node")
     }
 
-    /// The first point of the row's animal; none where it was in this row before.
+    /// The first point of the row's animal; `None` if the animal was in this row before.
     fn animal(&mut self, line: &Line<'_>, row: usize) -> Option<usize> {
         let cell = self.track.map(|column| self.cells.at(line, column));
         let mut name = cell.map_or_else(String::new, |cell| cell.text().into_owned());
@@ -247,7 +247,7 @@ impl Instances<'_> {
     }
 }
 
-/// Whether these are the titles of such a table.
+/// Returns `true` if these are the titles of such a table.
 pub(super) fn is_header(line: &Line<'_>, delimiter: Delimiter, file: &Path) -> bool {
     let cells = split(line, delimiter, file).unwrap_or_default();
     let node = |cell: &Cell<'_>| cell.raw.strip_suffix(".x").is_some();

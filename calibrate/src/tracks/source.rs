@@ -4,12 +4,12 @@ use std::io::{self, BufRead, BufReader, Cursor, Read};
 
 use super::utf16::Utf16;
 
-/// Bytes by which a file's encoding is told.
+/// First bytes that determine a file's encoding.
 const PREFIX: usize = 4096;
 /// Bytes read at once.
 const BUFFER: usize = 1 << 18;
 
-/// What a stream of bytes turned out to be.
+/// Encoding of a stream of bytes.
 pub(super) enum Source<'s> {
     /// Text without its byte order mark. Bytes that are no UTF-8 are still in it.
     Text(Box<dyn BufRead + 's>),
@@ -18,7 +18,7 @@ pub(super) enum Source<'s> {
 }
 
 /// # Errors
-/// What the stream answers.
+/// Errors of the stream.
 pub(super) fn open<'s>(mut bytes: impl Read + 's) -> io::Result<Source<'s>> {
     let mut prefix = Vec::with_capacity(PREFIX);
     bytes
@@ -52,7 +52,7 @@ pub(super) fn open<'s>(mut bytes: impl Read + 's) -> io::Result<Source<'s>> {
     }))
 }
 
-/// How the two bytes of a UTF-16 unit make it.
+/// Conversion of two bytes to a UTF-16 unit.
 type Unit = fn([u8; 2]) -> u16;
 
 /// UTF-16, by its mark or without, and how long the mark is.

@@ -1,4 +1,4 @@
-//! What a tracking file holds, without its places.
+//! Summary of a tracking file without its positions.
 
 use std::fmt::Display;
 
@@ -6,13 +6,13 @@ use serde::{Serialize, Serializer};
 
 use super::{PointKind, TrackFile, TrackFormat, TrackWarning, Unit};
 
-/// What a tracking file holds, under the keys of answers.
+/// Summary of a tracking file, under the keys of the JSON output.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TrackSurvey {
     /// Its format.
     #[serde(serialize_with = "in_words")]
     pub format: TrackFormat,
-    /// Rows a second, as in [`TrackFile::rate_hz`]; answers have null where a single frame tells no rate.
+    /// Rows a second, as in [`TrackFile::rate_hz`]; null in JSON if there is a single frame without a rate.
     #[serde(serialize_with = "where_known")]
     pub rate_hz: f64,
     /// The unit of length in the file.
@@ -22,7 +22,7 @@ pub struct TrackSurvey {
     pub frames: usize,
     /// Its points, in the order of the file.
     pub points: Vec<PointPresence>,
-    /// What the reader noticed.
+    /// Irregularities that the reader noticed.
     #[serde(serialize_with = "each_in_words")]
     pub warnings: Vec<TrackWarning>,
 }
@@ -32,18 +32,18 @@ pub struct TrackSurvey {
 pub struct PointPresence {
     /// Its name, as in the file.
     pub name: String,
-    /// What it is.
+    /// Type.
     #[serde(serialize_with = "in_words")]
     pub kind: PointKind,
     /// Its ID in the file; empty where the file has none.
     pub id: String,
     /// In how many rows it is there.
     pub present: usize,
-    /// How many runs of rows it is missing in.
+    /// Number of gaps.
     pub gaps: usize,
     /// The longest of them.
     pub longest_gap: usize,
-    /// Whether the file gives its orientation, so that it can be the `body` of a campaign.
+    /// `true` if the file gives its orientation, so that it can be the `body` of a campaign.
     pub oriented: bool,
 }
 

@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use super::TrackWarning;
 use super::grid::ColumnClock;
 
-/// Digits behind the decimal sign from which on rounding matters to nobody.
+/// Digits after the decimal sign from which on rounding does not matter.
 const FINE: usize = 4;
 /// Steps that differ by less than this share are even.
 const EVEN: f64 = 0.01;
@@ -52,7 +52,7 @@ pub(super) struct Timeline {
     times: Vec<f64>,
 }
 
-/// What the rows turned out to be.
+/// Timing of the rows.
 #[derive(Debug)]
 pub(super) struct Timing {
     pub(super) rate_hz: f64,
@@ -73,14 +73,14 @@ pub(super) struct Repeated {
 /// An even clock behind the stamps.
 struct Pace {
     rate_hz: f64,
-    /// What the stamps were rounded to \[s\], where that shows.
+    /// Unit to which the stamps were rounded \[s\], if that shows.
     unit_s: Option<f64>,
     /// Every row is one step on, whatever its stamp says.
     by_rows: bool,
 }
 
 impl Timeline {
-    /// `keeps` the times of all rows, or only what is asked of them at the end.
+    /// With `keeps` the times of all rows are kept, otherwise only those needed at the end.
     pub(super) fn new(keeps: bool) -> Self {
         Self {
             keeps,
@@ -106,7 +106,7 @@ impl Timeline {
         (self.rows > 0).then_some(self.last)
     }
 
-    /// How a stamp was written, in a unit of so many seconds.
+    /// Notes the number of digits of a stamp, in a unit of this many seconds.
     pub(super) fn written(&mut self, text: &str, seconds: f64) {
         let digits = text.trim().split_once(['.', ',']).map_or("", |cut| cut.1);
         let plain = digits.bytes().all(|b| b.is_ascii_digit());
@@ -115,7 +115,7 @@ impl Timeline {
         self.seconds = seconds;
     }
 
-    /// Whether equal stamps may yet turn out to be rounded ones.
+    /// Returns `true` if equal stamps may be rounded ones.
     pub(super) fn may_repeat(&self) -> bool {
         self.decimals.is_some_and(|decimals| decimals < FINE)
     }
@@ -190,8 +190,8 @@ impl Timeline {
             })
     }
 
-    /// Whether all steps are whole multiples of the usual one, which is the shortest, and few are longer: rows are missing on
-    /// a clock whose times are written exactly. (Ninety hertz in hundredths of a second look the same.)
+    /// Returns `true` if all steps are whole multiples of the usual one, which is the shortest, and few are longer: rows are missing
+    /// on a clock whose times are written exactly. (Ninety hertz in hundredths of a second look the same.)
     fn only_misses_rows(&self, median: f64, shortest: f64) -> bool {
         let whole = |bin: &Bin| {
             let times = bin.mean() / median;
@@ -381,7 +381,7 @@ impl Timeline {
 mod tests {
     use super::*;
 
-    /// The timing of stamps at a rate, written with so many digits; `seen` says which frames are there.
+    /// The timing of stamps at a rate, written with this number of digits; `seen` lists the frames that are there.
     fn rounded(rate_hz: f64, digits: usize, seen: impl Fn(usize) -> bool) -> Timing {
         let mut timeline = Timeline::new(true);
         for frame in (0..2000).filter(|frame| seen(*frame)) {

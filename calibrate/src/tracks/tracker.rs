@@ -107,7 +107,7 @@ struct Reader<'f> {
     cells: Cells,
     /// Times of the rows, by the first clock that has one.
     timeline: Timeline,
-    /// Whether all clocks agreed in every row yet.
+    /// `true` while all clocks agree in every row.
     together: bool,
     last_decimals: usize,
     extent: Option<usize>,

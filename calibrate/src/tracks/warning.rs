@@ -1,22 +1,22 @@
-//! What a reader noticed without being stopped by it.
+//! Warnings of the readers.
 
 use std::fmt;
 
-/// What a reader noticed without being stopped by it.
+/// Irregularity that does not stop a reader.
 #[derive(Debug, Clone, PartialEq)]
 pub enum TrackWarning {
     /// A format version that no sample was seen of.
     UnseenVersion(String),
     /// Frame numbers jump: how often, and how many frames are left out in all.
     FrameJumps {
-        /// How many jumps.
+        /// Number of jumps.
         jumps: usize,
         /// Frames that are not in the file.
         frames: u64,
     },
     /// The header's count of frames is not the count of rows.
     FrameCount {
-        /// What the header says.
+        /// Value of the header.
         header: u64,
         /// Rows with data.
         rows: usize,
@@ -27,12 +27,12 @@ pub enum TrackWarning {
         header_hz: f64,
         /// The time column's rate \[Hz\].
         column_hz: f64,
-        /// Whether the difference is so large that the time column was used.
+        /// `true` if the difference is so large that the time column was used.
         column_used: bool,
     },
     /// Positions with one axis blank were taken as missing.
     HalfBlank {
-        /// How many.
+        /// Number.
         count: usize,
         /// The first line with one.
         first_line: usize,
@@ -57,7 +57,7 @@ pub enum TrackWarning {
     },
     /// Positions that were left out because their likelihood is low.
     Unlikely {
-        /// How many.
+        /// Number.
         count: usize,
         /// The least likelihood that counts.
         threshold: f64,
@@ -85,7 +85,7 @@ pub enum TrackWarning {
     },
     /// Frame numbers that do not grow while times do: the times were used.
     Renumbered {
-        /// How many.
+        /// Number.
         count: usize,
         /// The first line with one.
         first_line: usize,

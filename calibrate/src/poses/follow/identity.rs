@@ -31,7 +31,7 @@ pub(super) struct Settled {
     pub(super) contested: Option<f64>,
 }
 
-/// What names say of a group.
+/// Labels of a group.
 enum Names {
     Silent,
     Agree,
@@ -100,7 +100,7 @@ fn names(group: &[Row]) -> Names {
     }
 }
 
-/// Whether names at the end are others than at the beginning.
+/// Returns `true` if the names at the end differ from those at the beginning.
 fn change_sides(votes: &[bool]) -> bool {
     let rows = (votes.len() / 50).max(ENDS).min(votes.len());
     let agree = |end: &[bool]| 2 * end.iter().filter(|agrees| **agrees).count() > end.len();
@@ -132,7 +132,7 @@ fn groups(search: &Search<'_>, rows: Vec<Row>, starts: &[usize]) -> Vec<Vec<Row>
     groups
 }
 
-/// Whether the heading goes on (`true`) or is turned round, where the gap is too short for anything in between.
+/// Returns `true` if the heading continues and `false` if it is reversed; `None` if the gap is too long for that.
 fn goes_on(
     search: &Search<'_>,
     before: &[Row],

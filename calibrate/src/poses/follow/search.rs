@@ -1,4 +1,4 @@
-//! What the search for two reflectors knows before it walks: candidates, labels as hints, the distance to look for.
+//! Search for two reflectors: candidates, labels as hints, and the expected distance.
 
 use std::collections::HashMap;
 
@@ -10,8 +10,8 @@ use crate::median::median;
 use crate::poses::{PoseError, PoseOptions};
 use crate::{TrackFile, TrackPoint};
 
-/// How far both reflectors together may be from their predicted places from one row to the next, over their distance; and after
-/// a gap, or they could be exchanged.
+/// Tolerance of both reflectors about their predicted positions from one row to the next, over their distance; and after a gap,
+/// or they could be exchanged.
 pub(super) const REACH: (f64, f64) = (0.3, 0.45);
 /// Limits after a gap over the medians of a first pass: six standard deviations of a distance, ten of a prediction.
 const TIGHTER: (f64, f64) = (9.0, 8.0);
@@ -115,7 +115,7 @@ impl Search<'_> {
             .iter()
             .filter_map(|i| Some((*i, self.track.points.get(*i)?.position(row)?)));
         for (point, place) in seen {
-            // Record lines tell of a body's marker twice, in its own record and in the frame's list: it is one candidate.
+            // Record lines give a body's marker twice, in its own record and in the frame's list: it is one candidate.
             if let Some(same) = out.iter_mut().find(|(_, there)| *there == place) {
                 if self.is_label(point) {
                     same.0 = point;
@@ -159,7 +159,7 @@ impl Search<'_> {
         );
     }
 
-    /// How many labels of a chosen pair agree with the choice, and how many contradict it.
+    /// Number of labels of a chosen pair that agree with the choice, and that contradict it.
     fn votes(&self, front: usize, back: usize) -> (f64, f64) {
         let says = |which: &[usize], i| f64::from(u8::from(which.contains(&i)));
         (
@@ -168,7 +168,7 @@ impl Search<'_> {
         )
     }
 
-    /// Whether the labels of a chosen pair agree with the choice.
+    /// Returns `true` if the labels of a chosen pair agree with the choice.
     pub(super) fn labels(&self, front: usize, back: usize) -> Option<bool> {
         let (agrees, contradicts) = self.votes(front, back);
         let most = agrees.total_cmp(&contradicts);

@@ -1,15 +1,15 @@
-//! Places that may matter to following: of many points only those near the reflectors are kept, so that memory does not grow with
-//! markers of other things in the room.
+//! Filter for positions: only those near the named reflectors are kept, so that memory does not grow with the markers of other
+//! objects.
 
 use crate::tracks::TrackPoint;
 use crate::tracks::options::UsedPoints;
 
-/// Kept is what is within so many distances of the reflectors of a named point.
+/// Positions are kept within this multiple of the reflectors' distance from a named point.
 const REACH: f64 = 3.0;
 
 /// Decides row by row which places are kept.
 pub(super) struct Nearby {
-    /// Whether a point is named.
+    /// `true` if the point is named.
     named: Vec<bool>,
     /// Square of the reach in the file's unit.
     reach: f64,

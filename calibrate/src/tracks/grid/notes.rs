@@ -1,4 +1,4 @@
-//! What the rows were like.
+//! Irregularities of the rows.
 
 use crate::tracks::TrackWarning;
 
@@ -13,7 +13,7 @@ pub(in crate::tracks) struct ColumnClock {
     pub(in crate::tracks) rate_hz: f64,
 }
 
-/// What is worth a warning at the end.
+/// Irregularities that give a warning at the end.
 #[derive(Default)]
 pub(super) struct Notes {
     jumps: usize,

@@ -50,12 +50,12 @@ pub(super) struct FramePose {
     pub(super) turn: Option<[f64; 4]>,
 }
 
-/// What the extended records of a frame say.
+/// Markers in the extended records of a frame.
 #[derive(Default)]
 pub(super) struct Seen {
     /// Tracked bodies by their index, and the mean of their markers' solved places.
     tracked: Vec<(usize, Vector3<f64>)>,
-    /// Whether there was any record.
+    /// `true` if there was any record.
     any: bool,
 }
 

@@ -9,7 +9,7 @@ use crate::tracks::number::number;
 use crate::tracks::rotation::Rotation;
 use crate::tracks::{TrackError, TrackProblem};
 
-/// What three coordinates say.
+/// Position by three coordinates.
 pub(super) enum Place {
     /// All three are there.
     Seen([f64; 3]),
@@ -71,7 +71,7 @@ impl<'r> Record<'r> {
         self.error(0, TrackProblem::UnknownRecord { text })
     }
 
-    /// That so many fields are there, and nothing behind them.
+    /// Checks that the record has exactly this number of fields.
     pub(super) fn expect(&self, expected: usize) -> Result<(), TrackError> {
         if self.cells.len() < expected || self.cells.any_from(&self.line, expected) {
             let problem = TrackProblem::FieldCount {
@@ -84,7 +84,7 @@ impl<'r> Record<'r> {
         Ok(())
     }
 
-    /// How many there are of something.
+    /// Parses a count of markers, bodies or frames.
     pub(super) fn count(&self, at: usize, field: &'static str) -> Result<usize, TrackError> {
         let cell = self.cell(at);
         cell.raw

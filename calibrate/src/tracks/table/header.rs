@@ -14,9 +14,9 @@ pub(super) struct Header {
     pub(super) width: usize,
     /// The column of an id in tables of one row a point.
     pub(super) id: Option<usize>,
-    /// Whether an angle's unit is not said.
+    /// `true` if an angle has no stated unit.
     pub(super) short_angles: bool,
-    /// Whether the columns are called as Kinovea calls them (`Time`, `ball/0/X`).
+    /// `true` if the columns have Kinovea's names (`Time`, `ball/0/X`).
     pub(super) kinovea: bool,
     pub(super) clock: Clock,
     /// The unit that the columns' names say; `None` where they say none.
@@ -325,7 +325,7 @@ fn clock(
     let frame = find(&["frame", "frame#", "frames", "frame_idx", "frame_id"])
         .or_else(|| unnamed.filter(whole));
     let time = TIMES.iter().filter_map(|word| find(&[word]));
-    // A stamp that nobody set is 0.
+    // A stamp that was not set is 0.
     let time = time.into_iter().find(|column| {
         let stamp = names
             .get(*column)

@@ -236,7 +236,7 @@ impl TakesRows for LongRows<'_> {
         if id.raw.is_empty() || matches!(self.decimals.number(id.raw), Number::Missing) {
             return Ok(());
         }
-        // pandas writes whole numbers beside blanks as 3.0.
+        // pandas writes whole numbers next to blanks as 3.0.
         let name = id.raw.strip_suffix(".0").unwrap_or(id.raw);
         let known = self.ids.get(name).copied();
         let track = known.unwrap_or_else(|| {

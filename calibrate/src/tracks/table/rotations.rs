@@ -15,12 +15,12 @@ pub(super) struct Found {
     /// The name of its point; empty if the columns have none.
     stem: String,
     pub(super) rotation: Rotation,
-    /// Whether the unit of the angle is not said.
+    /// `true` if the angle has no stated unit.
     pub(super) without_unit: bool,
 }
 
 impl Found {
-    /// Whether it belongs to the point that these position columns are called by.
+    /// Returns `true` if it belongs to the point of these position columns.
     pub(super) fn is_of(&self, point: &str) -> bool {
         without(point, &POSITION).eq_ignore_ascii_case(&self.stem)
     }

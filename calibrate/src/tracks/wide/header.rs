@@ -9,7 +9,7 @@ use crate::tracks::number;
 use crate::tracks::rotation::Rotation;
 use crate::tracks::{PointKind, TrackError, TrackPoint, TrackProblem, Unit};
 
-/// What the head says.
+/// Content of the head.
 pub(super) struct Header {
     /// `Format Version`, with a point.
     pub(super) version: String,
@@ -19,7 +19,7 @@ pub(super) struct Header {
     pub(super) unit: Unit,
     /// `Total Exported Frames`, which may lie.
     pub(super) frames: Option<u64>,
-    /// How many columns there are.
+    /// Number of columns.
     pub(super) width: usize,
     /// The line of the axis letters.
     pub(super) axis_line: usize,
@@ -140,7 +140,7 @@ fn width(types: &[Cell<'_>], axes: &[Cell<'_>]) -> usize {
     last(types).max(last(axes))
 }
 
-/// The first row: key, value, key, value; asked by name, because versions put in new keys anywhere.
+/// The first row: key, value, key, value. Values are found by their keys, because versions insert new keys anywhere.
 struct Keys<'r, 'a> {
     line: &'r Line<'a>,
     cells: &'r [Cell<'a>],
@@ -257,7 +257,7 @@ impl<'a> Columns<'_, 'a> {
         (of(self.types), of(self.names), self.ids.map_or("", of))
     }
 
-    /// Whether the column has this component.
+    /// Returns `true` if the column has this component.
     fn is(&self, index: usize, component: &str) -> bool {
         let cell = self.components.get(index);
         cell.is_some_and(|cell| cell.is(component))

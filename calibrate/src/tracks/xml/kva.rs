@@ -67,7 +67,7 @@ fn name(track: Node<'_, '_>, index: usize) -> String {
     name.map_or_else(|| format!("track {}", index + 1), str::to_owned)
 }
 
-/// How times are written.
+/// Format of times.
 struct Clock {
     /// Seconds of a time stamp of the video, by the user's frame rate.
     stamp_s: Option<f64>,
