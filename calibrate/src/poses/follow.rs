@@ -35,7 +35,7 @@ pub struct FollowReport {
     pub swaps_repaired: usize,
     /// These stretches.
     pub swaps: Vec<Stretch>,
-    /// Points that were in followed rows and are no reflector.
+    /// Number of points near the reflectors that are no reflectors. Named reflectors limit this to three times their distance.
     pub ghosts_rejected: usize,
     /// Stretches of rows with such points.
     pub ghosts: Vec<Stretch>,
