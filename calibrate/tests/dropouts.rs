@@ -1,6 +1,9 @@
 //! Dropouts and noise: the fit bridges the gaps, or the message names the cause. The simulated laboratory (`lab`) shares no code with
 //! the workspace.
 
+// Formulas in the docs read like the paper's: r_s, χ.
+#![allow(clippy::doc_markdown)]
+
 mod judged;
 mod lab;
 
@@ -20,8 +23,8 @@ fn lost_frames_and_noise_are_fitted_through() {
         for seed in [21, 22] {
             let lab = Lab {
                 cameras: Cameras {
-                    dropout,
                     noise,
+                    dropout,
                     ..Cameras::FULL
                 },
                 ..Lab::new(seed)
@@ -47,8 +50,8 @@ fn too_many_lost_frames_and_too_much_noise_are_named() {
     let refused = |dropout, noise| {
         let lab = Lab {
             cameras: Cameras {
-                dropout,
                 noise,
+                dropout,
                 ..Cameras::FULL
             },
             ..Lab::new(5)

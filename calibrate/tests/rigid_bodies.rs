@@ -1,6 +1,9 @@
 //! Campaigns whose middle link is a rigid body of the tracking program. The simulated laboratory (`lab`) shares no code with the
 //! workspace.
 
+// Formulas in the docs read like the paper's: r_s, χ.
+#![allow(clippy::doc_markdown)]
+
 mod lab;
 
 use std::fmt::Write;

@@ -64,6 +64,7 @@ impl Columns {
 }
 
 /// Layout of the rows below a header.
+#[allow(clippy::struct_excessive_bools)] // independent properties of formats
 pub(super) struct Grid {
     pub(super) delimiter: Delimiter,
     /// Cells in a row; blank ones may follow.

@@ -348,7 +348,8 @@ impl Reader {
         };
         let by_name = bodies().find(|(_, body)| body.name == name);
         let found = by_name.or_else(|| bodies().find(|(_, body)| body.id == id));
-        let index = found.map(|(index, _)| index).unwrap_or_else(|| {
+        let found = found.map(|(index, _)| index);
+        let index = found.unwrap_or_else(|| {
             self.body((&name, &id), markers, &[]);
             self.bodies.len() - 1
         });

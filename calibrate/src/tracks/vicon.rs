@@ -1,6 +1,7 @@
 //! Vicon's CSV, a section of trajectories (`X,Y,Z`) or of rigid bodies (`Objects`, `Segments`: `RX,RY,RZ,TX,TY,TZ`, a rotation
 //! vector and a position): its name, the rate, names above the axes, a row of units.
 
+use std::ops::Range;
 use std::path::Path;
 
 use super::cells::{Cell, cell_at, split};
@@ -82,25 +83,11 @@ pub(super) fn read(
         } else {
             PointKind::of_marker(&name)
         };
-        let rotation = ["RX", "RY", "RZ"].map(|axis| {
-            let mut inside = column..end;
-            inside.find(|at| cell_at(&axis_cells, *at).is(axis))
-        });
-        let rotation = match rotation {
-            [Some(x), Some(y), Some(z)] => {
-                let radians = match cell_at(&unit_cells, x).raw {
-                    "rad" => 1.0,
-                    _ => 1_f64.to_radians(),
-                };
-                Some(Rotation::Vector([x, y, z], radians))
-            }
-            _ => None,
-        };
+        let rotation = rotation(column..end, &axis_cells, &unit_cells);
         let point = TrackPoint::new(name, kind, String::new(), Vec::new());
-        points.push(if rotation.is_some() {
-            point.oriented()
-        } else {
-            point
+        points.push(match rotation {
+            Some(_) => point.oriented(),
+            None => point,
         });
         columns.push(Columns {
             rotation,
@@ -134,6 +121,24 @@ pub(super) fn read(
         body: grid::read(lines, reading, grid)?,
         warnings,
     })
+}
+
+/// The rotation vector of a body in these columns.
+fn rotation(
+    columns: Range<usize>,
+    axis_cells: &[Cell<'_>],
+    unit_cells: &[Cell<'_>],
+) -> Option<Rotation> {
+    let find = |axis: &str| {
+        let mut columns = columns.clone();
+        columns.find(|at| cell_at(axis_cells, *at).is(axis))
+    };
+    let [x, y, z] = [find("RX")?, find("RY")?, find("RZ")?];
+    let radians = match cell_at(unit_cells, x).raw {
+        "rad" => 1.0,
+        _ => 1_f64.to_radians(),
+    };
+    Some(Rotation::Vector([x, y, z], radians))
 }
 
 fn unit_of(line: &Line<'_>, cell: &Cell<'_>, file: &Path) -> Result<Unit, TrackError> {

@@ -665,11 +665,10 @@ fn kva() -> String {
     let mut text = "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<KinoveaVideoAnalysis>\n  <FormatVersion>2.0</FormatVersion>\n\
                     \u{20} <AverageTimeStampsPerFrame>512</AverageTimeStampsPerFrame>\n  <CaptureFramerate>50</CaptureFramerate>\n  <Tracks>\n"
         .to_owned();
-    let of: [(&str, fn(usize) -> [f64; 2]); 2] = [("front", front), ("back", back)];
-    for (name, place) in of {
+    for (name, along) in [("front", HALF), ("back", -HALF)] {
         writeln!(text, "    <Track id=\"{name}-id\" name=\"{name}\">\n      <TrackPointList Count=\"{ROWS}\" UserUnitLength=\"mm\">").unwrap();
         for i in 0..ROWS {
-            let [x, y] = place(i).map(|value| 1e3 * value);
+            let [x, y] = on_link(i, [along, 0.0]).map(|value| 1e3 * value);
             let comma = format!("{x:.2}").replace('.', ",");
             writeln!(
                 text,

@@ -57,11 +57,10 @@ pub(super) fn follow<'a>(
         });
     }
     let along = |poses: &[Pose]| {
-        usual(
-            poses
-                .iter()
-                .map(|pose| pose.turn * Vector3::ith(normal, 1.0)),
-        )
+        let directions = poses
+            .iter()
+            .map(|pose| pose.turn * Vector3::ith(normal, 1.0));
+        usual(&directions.collect::<Vec<_>>())
     };
     let up = along(&poses);
     let before = poses.len();
@@ -156,9 +155,9 @@ fn normal_axis(poses: &[Pose]) -> usize {
 }
 
 /// The usual direction: the median of each component.
-fn usual(directions: impl Iterator<Item = Vector3<f64>> + Clone) -> Vector3<f64> {
+fn usual(directions: &[Vector3<f64>]) -> Vector3<f64> {
     let component =
-        |axis: usize| median(directions.clone().map(|direction| direction[axis])).unwrap_or(0.0);
+        |axis: usize| median(directions.iter().map(|direction| direction[axis])).unwrap_or(0.0);
     let middle = Vector3::new(component(0), component(1), component(2));
     middle.try_normalize(1e-9).unwrap_or_else(Vector3::z)
 }

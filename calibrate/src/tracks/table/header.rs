@@ -67,50 +67,7 @@ impl Header {
             let mut turns = turns.iter();
             turns.any(|found| found.rotation.columns().contains(column))
         };
-        let mut groups = pairs(&names, options, &error)?;
-        for (name, axes) in stems(&names, of_turns, &error)? {
-            match axes {
-                [Some(x), Some(y), z] => {
-                    let columns: Vec<usize> = [x, y].into_iter().chain(z).collect();
-                    if !groups
-                        .iter()
-                        .any(|(_, taken)| taken.iter().eq(columns.iter().take(2)))
-                    {
-                        groups.push((name, columns));
-                    }
-                }
-                [Some(x), None, _] => {
-                    return Err(error(
-                        x,
-                        TrackProblem::MissingAxis {
-                            point: name,
-                            axis: 'y',
-                        },
-                    ));
-                }
-                [None, Some(y), _] => {
-                    return Err(error(
-                        y,
-                        TrackProblem::MissingAxis {
-                            point: name,
-                            axis: 'x',
-                        },
-                    ));
-                }
-                // Anything may end in z.
-                [None, None, _] => {}
-            }
-        }
-        if groups.is_empty() {
-            groups = loose(&names, of_turns);
-        }
-        if groups.is_empty() {
-            return Err(error(0, TrackProblem::NoPoints));
-        }
-        // TrackMate's spots have many columns more.
-        if id(&names).is_some() && groups.iter().any(|(stem, _)| stem == "POSITION") {
-            groups.retain(|(stem, _)| stem == "POSITION");
-        }
+        let groups = groups(&names, options, of_turns, &error)?;
         let turn_of = |stem: &str| {
             let stem = if stem == "x,y" { "" } else { stem };
             let own = turns.iter().find(|found| found.is_of(stem));
@@ -135,7 +92,7 @@ impl Header {
         } else {
             PointKind::Marker
         };
-        let point = |((name, columns), turn): (&(String, Vec<usize>), &Option<&Found>)| {
+        let point = |((name, columns), turn): (&(String, Vec<usize>), Option<&Found>)| {
             let name = rotations::point_name(name);
             let columns = columns.iter().map(whole).collect();
             let point = TrackPoint::new(name, kind, String::new(), columns);
@@ -157,10 +114,14 @@ impl Header {
             kinovea,
             clock,
             unit,
-            points: groups.iter().zip(&turns_of).map(point).collect(),
+            points: groups
+                .iter()
+                .zip(turns_of.iter().copied())
+                .map(point)
+                .collect(),
             columns: groups
                 .iter()
-                .zip(&turns_of)
+                .zip(turns_of.iter().copied())
                 .map(|((_, columns), turn)| Columns {
                     rotation: turn.map(|found| found.rotation),
                     ..places(columns)
@@ -168,6 +129,63 @@ impl Header {
                 .collect(),
         })
     }
+}
+
+/// Position columns by the name of their point.
+///
+/// # Errors
+/// A point without an axis, or a table without points.
+fn groups(
+    names: &[Name<'_>],
+    options: &TrackOptions,
+    of_turns: impl Fn(&usize) -> bool + Copy,
+    error: &impl Fn(usize, TrackProblem) -> TrackError,
+) -> Result<Vec<(String, Vec<usize>)>, TrackError> {
+    let mut groups = pairs(names, options, error)?;
+    for (name, axes) in stems(names, of_turns, error)? {
+        match axes {
+            [Some(x), Some(y), z] => {
+                let columns: Vec<usize> = [x, y].into_iter().chain(z).collect();
+                if !groups
+                    .iter()
+                    .any(|(_, taken)| taken.iter().eq(columns.iter().take(2)))
+                {
+                    groups.push((name, columns));
+                }
+            }
+            [Some(x), None, _] => {
+                return Err(error(
+                    x,
+                    TrackProblem::MissingAxis {
+                        point: name,
+                        axis: 'y',
+                    },
+                ));
+            }
+            [None, Some(y), _] => {
+                return Err(error(
+                    y,
+                    TrackProblem::MissingAxis {
+                        point: name,
+                        axis: 'x',
+                    },
+                ));
+            }
+            // Anything may end in z.
+            [None, None, _] => {}
+        }
+    }
+    if groups.is_empty() {
+        groups = loose(names, of_turns);
+    }
+    if groups.is_empty() {
+        return Err(error(0, TrackProblem::NoPoints));
+    }
+    // TrackMate's spots have many columns more.
+    if id(names).is_some() && groups.iter().any(|(stem, _)| stem == "POSITION") {
+        groups.retain(|(stem, _)| stem == "POSITION");
+    }
+    Ok(groups)
 }
 
 /// The points that the user named by their columns.
@@ -329,7 +347,8 @@ fn clock(
     let time = time.into_iter().find(|column| {
         let stamp = names
             .get(*column)
-            .is_some_and(|name| name.bare.ends_with(".stamp"));
+            .and_then(|name| name.bare.rsplit_once('.'))
+            .is_some_and(|(_, last)| last == "stamp");
         !stamp || value(*column).is_some_and(|value| value > 0.0)
     });
     if let Some(time) = time.or_else(|| unnamed.filter(|column| !whole(column))) {

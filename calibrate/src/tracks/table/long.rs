@@ -37,59 +37,19 @@ pub(super) fn read(
     let has = |name: &str| titles.iter().any(|cell| cell.is(name));
     let trackmate = has("POSITION_X") && has("TRACK_ID");
     let trackpy = has("particle");
-    let mut below = 0;
-    let mut own = None;
-    let mut clock = header.clock;
+    let mut spots = Spots {
+        rows: 0,
+        unit: None,
+        clock: header.clock,
+    };
     if trackmate {
-        let rows = head.iter().skip(1).take(TRACKMATE_ROWS);
-        let rows: Vec<Vec<Cell<'_>>> = rows
-            .map_while(|line| split(line, layout.delimiter, reading.file).ok())
-            .take_while(|cells| !cells.iter().any(|cell| is_id(cell)))
-            .collect();
-        below = rows.len();
-        // (pixel), (micron), (sec), (frame)
-        let unit_of = |column: usize| {
-            let cell = rows.last()?.get(column)?;
-            Some(cell.raw.trim_matches(['(', ')']).to_lowercase())
-        };
-        let [x, ..] = header
-            .columns
-            .first()
-            .map_or([None; 3], |columns| columns.axes);
-        let text = x.and_then(unit_of).unwrap_or_else(|| "pixel".to_owned());
-        own = Some(match text.as_str() {
-            "micron" | "microns" | "µm" | "um" => Unit::Scaled(1e-6),
-            text => Unit::from_name(text).unwrap_or(Unit::Unknown),
-        });
-        if let Clock::Stamped { time, .. } = clock {
-            let seconds = match unit_of(time).as_deref() {
-                Some("sec" | "s" | "seconds" | "second") => Some(1.0),
-                Some("ms" | "msec" | "millisecond" | "milliseconds") => Some(1e-3),
-                Some("min" | "minute" | "minutes") => Some(60.0),
-                _ => None,
-            };
-            clock = match seconds {
-                Some(seconds) => Clock::Stamped {
-                    time,
-                    seconds,
-                    frame: None,
-                },
-                // Frames, whatever they are called.
-                None => Clock::Numbered {
-                    frame: time,
-                    first: 0,
-                    rate_hz: reading
-                        .options
-                        .need_rate(head.first().unwrap_or(&NO_LINE), reading.file)?,
-                    time: None,
-                },
-            };
-        }
+        spots = Spots::read(&head, reading, layout, &header)?;
     } else if trackpy {
-        own = Some(header.unit.unwrap_or(Unit::Pixel));
+        spots.unit = Some(header.unit.unwrap_or(Unit::Pixel));
     }
+    let clock = spots.clock;
     let image = trackmate || trackpy || header.unit == Some(Unit::Pixel);
-    let own = own.or(header.unit);
+    let own = spots.unit.or(header.unit);
     let (unit, metres, overridden) = reading.options.unit(own.unwrap_or(Unit::Metre));
     let rate_hz = match clock {
         Clock::Numbered { rate_hz, .. } => Some(rate_hz),
@@ -118,7 +78,7 @@ pub(super) fn read(
         first_day: None,
         half_blank: None,
     };
-    let after = layout.header_line + below;
+    let after = layout.header_line + spots.rows;
     let cut = read_rows(lines, reading.file, after, &mut rows)?;
     let mut warnings: Vec<TrackWarning> = cut.into_iter().collect();
     warnings.extend(overridden.filter(|_| own.is_some()));
@@ -141,6 +101,74 @@ pub(super) fn read(
         body: merged(rows.timeline, rows.tracks, metres),
         warnings,
     })
+}
+
+/// Lines below a header of TrackMate, with the unit and the clock that they state.
+struct Spots {
+    rows: usize,
+    unit: Option<Unit>,
+    clock: Clock,
+}
+
+impl Spots {
+    /// # Errors
+    /// Frame numbers without a rate.
+    fn read(
+        head: &[Line<'_>],
+        reading: &Reading<'_>,
+        layout: &TableLayout,
+        header: &Header,
+    ) -> Result<Self, TrackError> {
+        let mut clock = header.clock;
+        let rows = head.iter().skip(1).take(TRACKMATE_ROWS);
+        let rows: Vec<Vec<Cell<'_>>> = rows
+            .map_while(|line| split(line, layout.delimiter, reading.file).ok())
+            .take_while(|cells| !cells.iter().any(|cell| is_id(cell)))
+            .collect();
+        // (pixel), (micron), (sec), (frame)
+        let unit_of = |column: usize| {
+            let cell = rows.last()?.get(column)?;
+            Some(cell.raw.trim_matches(['(', ')']).to_lowercase())
+        };
+        let [x, ..] = header
+            .columns
+            .first()
+            .map_or([None; 3], |columns| columns.axes);
+        let text = x.and_then(unit_of).unwrap_or_else(|| "pixel".to_owned());
+        let unit = match text.as_str() {
+            "micron" | "microns" | "µm" | "um" => Unit::Scaled(1e-6),
+            text => Unit::from_name(text).unwrap_or(Unit::Unknown),
+        };
+        if let Clock::Stamped { time, .. } = clock {
+            let seconds = match unit_of(time).as_deref() {
+                Some("sec" | "s" | "seconds" | "second") => Some(1.0),
+                Some("ms" | "msec" | "millisecond" | "milliseconds") => Some(1e-3),
+                Some("min" | "minute" | "minutes") => Some(60.0),
+                _ => None,
+            };
+            clock = match seconds {
+                Some(seconds) => Clock::Stamped {
+                    time,
+                    seconds,
+                    frame: None,
+                },
+                // Frames, whatever they are called.
+                None => Clock::Numbered {
+                    frame: time,
+                    first: 0,
+                    rate_hz: reading
+                        .options
+                        .need_rate(head.first().unwrap_or(&NO_LINE), reading.file)?,
+                    time: None,
+                },
+            };
+        }
+        Ok(Self {
+            rows: rows.len(),
+            unit: Some(unit),
+            clock,
+        })
+    }
 }
 
 /// Stands for a header that is gone.
@@ -267,25 +295,21 @@ impl LongRows<'_> {
             Clock::Counted { rate_hz } => return Ok(self.rows as f64 / rate_hz),
         };
         let cell = self.cells.at(line, column);
-        match self.decimals.number(cell.raw) {
-            Number::Finite(stamp) => {
-                if matches!(self.clock, Clock::Stamped { .. }) {
-                    self.timeline.written(cell.raw, seconds);
-                }
-                Ok(stamp * seconds)
+        if let Number::Finite(stamp) = self.decimals.number(cell.raw) {
+            if matches!(self.clock, Clock::Stamped { .. }) {
+                self.timeline.written(cell.raw, seconds);
             }
-            _ => {
-                let Some(stamp) = Stamp::parse(cell.raw) else {
-                    let problem = TrackProblem::NotANumber {
-                        text: cell.text().into_owned(),
-                        cell: "time".to_owned(),
-                    };
-                    return Err(line.error(self.reading.file, cell.at, problem));
-                };
-                let day = *self.first_day.get_or_insert(stamp.day.unwrap_or(0));
-                Ok(stamp.since(day))
-            }
+            return Ok(stamp * seconds);
         }
+        let Some(stamp) = Stamp::parse(cell.raw) else {
+            let problem = TrackProblem::NotANumber {
+                text: cell.text().into_owned(),
+                cell: "time".to_owned(),
+            };
+            return Err(line.error(self.reading.file, cell.at, problem));
+        };
+        let day = *self.first_day.get_or_insert(stamp.day.unwrap_or(0));
+        Ok(stamp.since(day))
     }
 
     fn value(

@@ -252,7 +252,7 @@ struct Columns<'r, 'a> {
 
 impl<'a> Columns<'_, 'a> {
     /// Type, name and ID of a column.
-    fn key(&self, index: usize) -> (&'a str, &'a str, &'a str) {
+    fn key(&self, index: usize) -> Key<'a> {
         let of = |row: &[Cell<'a>]| row.get(index).map_or("", |cell| cell.raw);
         (of(self.types), of(self.names), self.ids.map_or("", of))
     }
@@ -264,9 +264,12 @@ impl<'a> Columns<'_, 'a> {
     }
 }
 
+/// Type, name and ID of a column.
+type Key<'a> = (&'a str, &'a str, &'a str);
+
 /// A group of columns while it is put together.
 struct Group<'a> {
-    key: (&'a str, &'a str, &'a str),
+    key: Key<'a>,
     at: usize,
     columns: [Option<usize>; 3],
     /// Columns of its rotation: x, y, z, w.
@@ -296,7 +299,7 @@ fn points(
     let text =
         |row: &[Cell<'_>], index: usize| row.get(index).is_some_and(|cell| !cell.raw.is_empty());
     // Rotations stand before the positions of their bodies.
-    let mut rotations: Vec<((&str, &str, &str), [Option<usize>; 4])> = Vec::new();
+    let mut rotations: Vec<(Key<'_>, [Option<usize>; 4])> = Vec::new();
     for (index, axis) in columns.axes.iter().enumerate().skip(2) {
         let key = columns.key(index);
         if columns.is(index, "Rotation") {

@@ -144,7 +144,7 @@ fn draft(
 ) -> Result<Draft, TrackError> {
     for (_, seen) in &mut tracks {
         seen.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
-        seen.dedup_by(|a, b| a.time_s == b.time_s);
+        seen.dedup_by(|a, b| a.time_s.total_cmp(&b.time_s).is_eq());
     }
     if tracks.iter().all(|(_, seen)| seen.is_empty()) {
         return Err(xml.error(root, TrackProblem::NoPoints));
