@@ -9,7 +9,8 @@
 //! - [`table()`]: the table that a robot is given of a gait, its corners rounded.
 //! - [`reach()`]: the largest angle of a gait, with its place, against what the servos allow.
 //! - [`until_wall`]: how many cycles a tank has room for; [`Forecast::displacement_error`]: what a calibration leaves open.
-//! - [`plan()`]: gaits that join strung together to a target, walls respected.
+//! - [`plan()`]: gaits that join strung together to a target, walls respected; [`Planner`]: the same over and over, from cycle to
+//!   cycle.
 //! - [`demand`]: torque, power and Reynolds number in a fluid of known viscosity.
 //! - [`forecast()`]: the displacement as designed, as stored, as commanded and as turned, loss by loss, before a gait is sent.
 //!
@@ -45,7 +46,7 @@ pub use losses::{
     Forecast, ForecastError, Loss, Played, Servos, Stage, Verdict, forecast, thickness,
 };
 pub use net_motion::NetMotion;
-pub use plan::{Errand, Family, Kind, Member, Plan, PlanError, Scaled, Step, plan};
+pub use plan::{Errand, Family, Kind, Member, Plan, PlanError, Planner, Scaled, Step, plan};
 pub use playlist::{PlaylistTable, Repeated};
 pub use reach::{Reach, reach};
 pub use table::table;

@@ -13,6 +13,7 @@
 mod aim;
 mod legs;
 mod member;
+mod planner;
 mod room;
 mod search;
 mod way_out;
@@ -27,10 +28,11 @@ use crate::playlist::{Repeated, leads_to};
 use crate::tank::Tank;
 use aim::Hit;
 use member::Nets;
-use room::{Room, Sweeps};
+use room::{Room, Sweeps, SweptAreas};
 use search::{EFFORTS, Seen, quickest};
 
 pub use member::{Kind, Member, Scaled};
+pub use planner::Planner;
 
 /// The gaits that a plan is made of.
 #[derive(Debug, Clone)]
@@ -181,6 +183,21 @@ impl Family {
         swimmer_model::Gait::at(&self.gaits[0].0, 0.0).phi * self.sign()
     }
 
+    /// # Errors
+    /// [`PlanError::Apart`] if the gaits do not start and end at one shape.
+    fn check_joined(&self) -> Result<(), PlanError> {
+        let shape = self.shape();
+        let apart = self.gaits.iter().map(|(gait, _)| {
+            let end = |u: f64| (swimmer_model::Gait::at(gait, u).phi * self.sign() - shape).norm();
+            end(0.0).max(end(1.0))
+        });
+        let apart = apart.fold(0.0, f64::max);
+        if apart > 1e-6 {
+            return Err(PlanError::Apart { apart });
+        }
+        Ok(())
+    }
+
     fn sign(&self) -> f64 {
         if self.mirrored { -1.0 } else { 1.0 }
     }
@@ -221,16 +238,8 @@ impl Family {
 /// assert!(matches!(refused, PlanError::Apart { apart } if (apart - 0.4).abs() < 1e-12));
 /// ```
 pub fn plan(model: &Model<f64>, family: &Family, errand: &Errand) -> Result<Plan, PlanError> {
-    let shape = family.shape();
-    let apart = family.gaits.iter().map(|(gait, _)| {
-        let end = |u: f64| (swimmer_model::Gait::at(gait, u).phi * family.sign() - shape).norm();
-        end(0.0).max(end(1.0))
-    });
-    let apart = apart.fold(0.0, f64::max);
-    if apart > 1e-6 {
-        return Err(PlanError::Apart { apart });
-    }
-    let room = Room::new(model, errand, errand.margin);
+    family.check_joined()?;
+    let room = Room::new(model, errand.tank, errand.margin);
     has_room(model, &room, family, errand)?;
     let nets = Nets::new(model, family, &errand.servos).map_err(|error| PlanError::Refused {
         gait: "fastest",
@@ -240,10 +249,11 @@ pub fn plan(model: &Model<f64>, family: &Family, errand: &Errand) -> Result<Plan
     let images = [(family.clone(), &nets), (family.mirror(), &nets.mirror())];
     let mut seen = Seen::default();
     for effort in &EFFORTS {
-        let roomy = Room::new(model, errand, errand.margin + effort.spare);
+        let roomy = Room::new(model, errand.tank, errand.margin + effort.spare);
         let mut found = None;
         for (family, nets) in &images {
-            let sweeps = Sweeps::new(&roomy, nets, family);
+            let swept = SweptAreas::default();
+            let sweeps = Sweeps::new(&roomy, nets, family, &swept);
             found = quickest(model, errand, &room, &sweeps, effort, found, &mut seen);
         }
         if let Some(found) = found {

@@ -13,7 +13,7 @@
 
 use gait_player::GaitTable;
 use gait_player::TICK_US;
-use gait_player::playback::{Playback, PlayedLeg, setpoints};
+use gait_player::playback::{Playback, PlayedLeg, PlayedPoint, setpoints};
 use gait_player::table::MAX_KNOTS;
 use gait_player::table::TableError;
 use nalgebra::Vector2;
@@ -239,6 +239,18 @@ impl<G: Gait<f64>> Gait<f64> for Strung<'_, G> {
 /// The path that the servos' joints take from straight through all tables to straight again: the robot's own set-points through
 /// the servo's own arithmetic.
 pub fn played(tables: &[PlaylistTable], servos: &Servos) -> Polyline {
+    let mut vertices = vec![Vector2::zeros()];
+    vertices.extend(
+        timed(tables, servos, [0.0; 2])
+            .iter()
+            .map(|point| Vector2::from(point.angles)),
+    );
+    Polyline::new(vertices)
+}
+
+/// The same path with its times, from joints at rest at these angles \[rad\] (within their dead band of straight): vertices from
+/// the first set-point of the soft start to the next rest.
+pub fn timed(tables: &[PlaylistTable], servos: &Servos, rest: [f64; 2]) -> Vec<PlayedPoint> {
     let legs: Vec<PlayedLeg<'_>> = tables
         .iter()
         .map(|table| PlayedLeg {
@@ -249,7 +261,7 @@ pub fn played(tables: &[PlaylistTable], servos: &Servos) -> Polyline {
         .collect();
     let mut commanded = Vec::new();
     setpoints(&legs, &servos.limits(), |setpoint| commanded.push(setpoint));
-    let mut vertices = vec![Vector2::zeros()];
+    let mut points = Vec::new();
     if let Some(first) = legs.first() {
         let playback = Playback {
             table: first.table,
@@ -258,9 +270,23 @@ pub fn played(tables: &[PlaylistTable], servos: &Servos) -> Polyline {
             limits: servos.limits(),
             plant: servos.plant(),
         };
-        playback.through(commanded, |point| vertices.push(point.angles.into()));
+        playback.through(rest, commanded, |point| points.push(point));
     }
-    Polyline::new(vertices)
+    points
+}
+
+/// The same path over one cycle in steady state, from the first knot on.
+pub fn steady_cycle(table: &GaitTable, period_us: u32, servos: &Servos) -> Vec<PlayedPoint> {
+    let playback = Playback {
+        table,
+        period_us,
+        maps: [servos.map(); 2],
+        limits: servos.limits(),
+        plant: servos.plant(),
+    };
+    let mut points = Vec::new();
+    playback.cycle(1, |point| points.push(point));
+    points
 }
 
 /// Where a way of the joints leads, in the frame of the middle link at its start.

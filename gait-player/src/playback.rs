@@ -155,14 +155,16 @@ pub fn setpoints(legs: &[PlayedLeg<'_>], limits: &Limits, mut visit: impl FnMut(
 }
 
 impl Playback<'_> {
-    /// Visits the path of servos that start at rest at neutral and follow these set-points, one per tick, both ends included.
+    /// Visits the path of servos that start at rest at these angles \[rad\] and follow these set-points, one per tick, both ends
+    /// included.
     pub fn through(
         &self,
+        rest: [f64; 2],
         setpoints: impl IntoIterator<Item = [f32; 2]>,
         mut visit: impl FnMut(PlayedPoint),
     ) {
         let tick = u64::from(TICK_US);
-        let mut servos = [ServoPlant::new(0.0); 2];
+        let mut servos = rest.map(ServoPlant::new);
         let mut now = 0;
         for setpoint in setpoints {
             self.visit_tick(

@@ -200,7 +200,10 @@ fn off(pose: &Pose<f64>) -> Vector3<f64> {
 }
 
 /// A pose to a real power: along its screw.
-fn power(pose: &Pose<f64>, amount: f64) -> Pose<f64> {
+pub(super) fn power(pose: &Pose<f64>, amount: f64) -> Pose<f64> {
+    if (amount - 1.0).abs() < f64::EPSILON {
+        return *pose;
+    }
     let half = 0.5 * pose.theta;
     // Of the twist whose exponential is the pose.
     let stretch = if half.abs() < 1e-9 {

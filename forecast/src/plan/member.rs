@@ -5,6 +5,7 @@ use nalgebra::Vector2;
 use swimmer_files::AnyGait;
 use swimmer_model::{Gait, GaitPoint, Model, Pose, wrapped_angle};
 
+use super::legs::power;
 use super::{Family, Step};
 use crate::losses::Servos;
 use crate::playlist::{leads_to, played, step_period, tables};
@@ -66,8 +67,8 @@ impl Member {
         }
     }
 
-    /// In words; in a mirror left is right.
-    pub(super) fn word(&self, mirrored: bool) -> &'static str {
+    /// Name of the motion: `forward`, `backward`, `left`, `right`, `turn-left` or `turn-right`. In a mirror left is right.
+    pub fn word(&self, mirrored: bool) -> &'static str {
         match (
             self.kind,
             self.backwards != (mirrored && self.kind != Kind::Forward),
@@ -107,7 +108,7 @@ impl Gait<f64> for Scaled {
 /// Net poses of all members as the servos play them, between scales by the polynomial through those at Chebyshev points: what a
 /// gait brings depends on its scale analytically, and what tables and dead bands take of it hardly less smoothly. And how long their
 /// cycles take.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Nets {
     scales: Vec<f64>,
     poses: [Vec<[f64; 3]>; 3],
@@ -115,6 +116,8 @@ pub(super) struct Nets {
     periods: [f64; 3],
     /// Of the servos \[rad/s\].
     max_rate: f64,
+    /// Factors on the motion of each kind, along its screw; 1 as predicted.
+    pub(super) gains: [f64; 3],
 }
 
 /// Scales that are swum.
@@ -140,6 +143,7 @@ impl Nets {
             poses: Default::default(),
             periods: family.gaits.each_ref().map(|(_, period)| *period),
             max_rate: servos.file.max_rate,
+            gains: [1.0; 3],
         };
         let of = |kind: Kind| {
             let at = |&scale: &f64| {
@@ -230,6 +234,11 @@ impl Nets {
 
     /// What a cycle of a member brings.
     pub(super) fn of(&self, member: &Member) -> Pose<f64> {
+        self.at_gain(member, self.gains[member.kind as usize])
+    }
+
+    /// The same at another gain.
+    pub(super) fn at_gain(&self, member: &Member, gain: f64) -> Pose<f64> {
         let poses = &self.poses[member.kind as usize];
         let (mut above, mut below) = ([0.0; 3], 0.0);
         for (k, (scale, pose)) in self.scales.iter().zip(poses).enumerate() {
@@ -247,7 +256,7 @@ impl Nets {
             below += weight;
         }
         let [x, y, theta] = above.map(|sum| sum / below);
-        let pose = Pose::new(x, y, theta);
+        let pose = power(&Pose::new(x, y, theta), gain);
         if member.backwards {
             pose.inverse()
         } else {

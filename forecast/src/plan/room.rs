@@ -1,13 +1,13 @@
 //! Whether a plan stays within its tank.
 
-use std::cell::OnceCell;
+use std::sync::OnceLock;
 
 use nalgebra::Vector2;
 use swimmer_model::{Model, Pose, trajectory};
 
+use super::Family;
 use super::legs::LARGEST;
 use super::member::{Member, Nets, SMALLEST};
-use super::{Errand, Family};
 use crate::losses::tolerance;
 use crate::path::Polyline;
 use crate::tank::{Tank, meets_wall, touching};
@@ -25,8 +25,8 @@ pub(super) struct Room<'a> {
 }
 
 impl<'a> Room<'a> {
-    pub(super) fn new(model: &'a Model<f64>, errand: &Errand, margin: f64) -> Self {
-        let tank = errand.tank.map(|tank| Tank {
+    pub(super) fn new(model: &'a Model<f64>, tank: Option<Tank>, margin: f64) -> Self {
+        let tank = tank.map(|tank| Tank {
             length: tank.length - 2.0 * margin,
             width: tank.width - 2.0 * margin,
         });
@@ -65,11 +65,22 @@ pub(super) struct Sweeps<'a> {
     pub(super) room: &'a Room<'a>,
     pub(super) nets: &'a Nets,
     pub(super) family: &'a Family,
-    /// Kind by kind and size by size.
-    swept: [Vec<OnceCell<Swept>>; 3],
+    swept: &'a SweptAreas,
+}
+
+/// Swept areas of one family, computed on first use: kind by kind and size by size.
+#[derive(Debug, Clone)]
+pub(super) struct SweptAreas([Vec<OnceLock<Swept>>; 3]);
+
+impl Default for SweptAreas {
+    fn default() -> Self {
+        let cells = || sizes().map(|_| OnceLock::new()).collect();
+        Self([cells(), cells(), cells()])
+    }
 }
 
 /// Where the body gets during a cycle, in the frame of its start. A tank is convex: corners of convex hulls are enough.
+#[derive(Debug, Clone)]
 struct Swept {
     links: Vec<Vector2<f64>>,
     /// Of its centre.
@@ -92,13 +103,17 @@ impl Swept {
 }
 
 impl<'a> Sweeps<'a> {
-    pub(super) fn new(room: &'a Room<'a>, nets: &'a Nets, family: &'a Family) -> Self {
-        let cells = || sizes().map(|_| OnceCell::new()).collect();
+    pub(super) fn new(
+        room: &'a Room<'a>,
+        nets: &'a Nets,
+        family: &'a Family,
+        swept: &'a SweptAreas,
+    ) -> Self {
         Self {
             room,
             nets,
             family,
-            swept: [cells(), cells(), cells()],
+            swept,
         }
     }
 
@@ -111,7 +126,7 @@ impl<'a> Sweeps<'a> {
         cycles: u32,
     ) -> Option<Pose<f64>> {
         let number = sizes().take_while(|size| *size >= member.scale).count();
-        let all = &self.swept[member.kind as usize];
+        let all = &self.swept.0[member.kind as usize];
         let cell = all.get(number.saturating_sub(1))?;
         let swept = cell.get_or_init(|| {
             // Up to the full size.

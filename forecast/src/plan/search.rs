@@ -125,14 +125,7 @@ pub(super) fn quickest(
         if least > most {
             break;
         }
-        let between = chains(nets, &wanted);
-        seen.met[0] += between.len();
-        let mut left: Vec<_> = between
-            .iter()
-            .filter_map(|legs| fitted(sweeps, &outward.there, &wanted, legs))
-            .collect();
-        seen.met[1] += left.len();
-        left.sort_by(|a, b| duration(a).total_cmp(&duration(b)));
+        let mut left = legs_between(sweeps, &outward.there, &wanted, seen);
         left.retain(|legs| ways + duration(legs) < most);
         for legs in left.iter().take(effort.aimed) {
             let chain = Chain {
@@ -155,6 +148,24 @@ pub(super) fn quickest(
         }
     }
     best
+}
+
+/// Chains of legs from this pose on that bring what is wanted and leave the walls alone, the quickest first.
+pub(super) fn legs_between(
+    sweeps: &Sweeps<'_>,
+    begun: &Pose<f64>,
+    wanted: &Pose<f64>,
+    seen: &mut Seen,
+) -> Vec<Vec<Step>> {
+    let all = chains(sweeps.nets, wanted);
+    seen.met[0] += all.len();
+    let fitted = all
+        .iter()
+        .filter_map(|legs| fitted(sweeps, begun, wanted, legs));
+    let mut within: Vec<_> = fitted.collect();
+    seen.met[1] += within.len();
+    within.sort_by(|a, b| duration(a).total_cmp(&duration(b)));
+    within
 }
 
 /// Poses that the errand may end in.
