@@ -1,0 +1,148 @@
+//! Match of the clocks of robot and cameras.
+//!
+//! Two sources: frames arrive after their exposure by at most a known delay, which bounds the offset; and the heading oscillates
+//! within a cycle as the model predicts from the robot's own clock, which gives the offset within that bound
+//! (cross-correlation, with a line taken out and the amplitude left free).
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::{Course, Pose};
+
+/// Steps of the scan over the bound \[s\].
+const SCAN_STEP: f64 = 0.004;
+/// Fewer poses than this give no match.
+const FEWEST_POSES: usize = 24;
+/// A match that is less certain than this is none \[s\].
+const LARGEST_UNCERTAINTY: f64 = 0.05;
+/// Amplitudes of the measured oscillation over the predicted one that count as the predicted gait.
+const AMPLITUDES: std::ops::RangeInclusive<f64> = 0.6..=1.6;
+
+/// Difference of the robot's clock and the cameras' clock: robot time = camera time + offset.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClockMatch {
+    /// Offset \[s\].
+    pub offset_s: f64,
+    /// Standard deviation of the offset \[s\], by the scatter of the headings.
+    pub uncertainty_s: f64,
+    /// Amplitude of the measured oscillation over the predicted one.
+    pub amplitude: f64,
+    /// Poses used.
+    pub poses: usize,
+}
+
+/// Bounds of the offset by arrival times.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Arrivals {
+    quickest: Option<f64>,
+}
+
+impl Arrivals {
+    /// Takes a frame: its time on the cameras' clock, and the robot's clock at its arrival, by the link's clock fit \[s\].
+    pub fn push(&mut self, camera_s: f64, robot_s: f64) {
+        let offset = robot_s - camera_s;
+        if offset.is_finite() {
+            self.quickest = Some(self.quickest.map_or(offset, |before| before.min(offset)));
+        }
+    }
+
+    /// Smallest and largest offset \[s\] if the quickest frame was under way for at most `longest_delay_s`, and the link's clock
+    /// fit is uncertain by `link_s`. `None` before the first frame.
+    pub fn bounds(&self, longest_delay_s: f64, link_s: f64) -> Option<[f64; 2]> {
+        let quickest = self.quickest?;
+        Some([quickest - longest_delay_s - link_s, quickest + link_s])
+    }
+}
+
+/// The offset within `bounds` \[s\] at which the headings of some poses, on the cameras' clock, fit a course that began at
+/// `began_s` on the robot's clock best. Returns `None` if there are too few poses, if the heading shows too little oscillation, or
+/// if the best offset lies at a bound.
+pub fn match_clocks(
+    poses: &[Pose],
+    course: &Course,
+    began_s: f64,
+    bounds: [f64; 2],
+) -> Option<ClockMatch> {
+    let headings = unwrapped(poses);
+    if headings.len() < FEWEST_POSES || bounds[1] <= bounds[0] {
+        return None;
+    }
+    let fit = |offset: f64| regression(&headings, course, began_s - offset);
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a count, bounded below"
+    )]
+    let steps = ((bounds[1] - bounds[0]) / SCAN_STEP)
+        .ceil()
+        .clamp(2.0, 20_000.0) as usize;
+    let step = (bounds[1] - bounds[0]) / steps as f64;
+    let scanned = (0..=steps).filter_map(|i| {
+        let offset = bounds[0] + step * i as f64;
+        Some((offset, fit(offset)?.squares))
+    });
+    let (rough, _) = scanned.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let mut offset = rough;
+    // Newton's method on the sum of squares, by differences over a scan's step.
+    let mut bend = 0.0;
+    for _ in 0..6 {
+        let [below, here, above] = [-step, 0.0, step].map(|by| fit(offset + by));
+        let (below, here, above) = (below?.squares, here?.squares, above?.squares);
+        bend = (above - 2.0 * here + below) / (step * step);
+        if bend <= 0.0 {
+            return None;
+        }
+        let slope = (above - below) / (2.0 * step);
+        offset -= (slope / bend).clamp(-step, step);
+    }
+    if offset < bounds[0] - step || offset > bounds[1] + step {
+        return None;
+    }
+    let best = fit(offset)?;
+    let variance = best.squares / (headings.len() as f64 - 4.0);
+    let uncertainty_s = (2.0 * crate::pose::FRAMES_PER_SAMPLE * variance / bend).sqrt();
+    let plausible = uncertainty_s < LARGEST_UNCERTAINTY && AMPLITUDES.contains(&best.amplitude);
+    plausible.then_some(ClockMatch {
+        offset_s: offset,
+        uncertainty_s,
+        amplitude: best.amplitude,
+        poses: headings.len(),
+    })
+}
+
+/// Times and headings without jumps of whole turns.
+fn unwrapped(poses: &[Pose]) -> Vec<(f64, f64)> {
+    let mut headings: Vec<(f64, f64)> = Vec::with_capacity(poses.len());
+    for pose in poses.iter().filter(|pose| pose.is_valid()) {
+        let before = headings.last().map_or(pose.heading_rad, |(_, last)| *last);
+        let turn = swimmer_model::wrapped_angle(pose.heading_rad - before);
+        headings.push((pose.time_s, before + turn));
+    }
+    headings
+}
+
+/// Least squares of the headings by a constant, a line and the course's heading.
+struct Regression {
+    squares: f64,
+    amplitude: f64,
+}
+
+/// `None` if the course's heading is constant over the poses.
+fn regression(headings: &[(f64, f64)], course: &Course, began_s: f64) -> Option<Regression> {
+    let first = headings.first()?.0;
+    let row = |time: f64| Vector3::new(1.0, time - first, course.at(time - began_s).theta);
+    let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
+    for &(time, heading) in headings {
+        let row = row(time);
+        normal += row * row.transpose();
+        right += row * heading;
+    }
+    let found = normal.cholesky()?.solve(&right);
+    let squares = headings
+        .iter()
+        .map(|&(time, heading)| (heading - row(time).dot(&found)).powi(2))
+        .sum();
+    Some(Regression {
+        squares,
+        amplitude: found.z,
+    })
+}

@@ -1,0 +1,257 @@
+//! Least squares of a tracked cycle by its predicted course: start pose, gain of the joint angles, drift of the tank, and what the
+//! match of the clocks left over.
+
+use nalgebra::{RowSVector, SMatrix, SVector, Vector2};
+use swimmer_model::{Model, wrapped_angle};
+
+use crate::pose::FRAMES_PER_SAMPLE;
+use crate::{Course, Pose};
+
+/// Model errors that no parameter takes up, as a share of the oscillation.
+pub(crate) const MODEL_ERROR: f64 = 0.02;
+/// Step of the gain for differences.
+const GAIN_STEP: f64 = 0.02;
+/// Priors that keep a few poses from fitting anything: of the gain, of the drift \[m/s\], and of the clock match \[s\].
+const PRIORS: [f64; 3] = [0.3, 3e-3, 0.01];
+/// Step of the time for differences \[s\].
+const TIME_STEP: f64 = 0.01;
+/// Parameters: start (x, y, heading), gain, drift (x, y), delay.
+const COUNT: usize = 7;
+const ITERATIONS: usize = 5;
+/// Share of a cycle at its start and at its end that the net motion is measured over.
+const END: f64 = 0.15;
+
+/// Course with its derivative by the gain of both joints.
+#[derive(Debug, Clone)]
+pub(crate) struct Basis {
+    pub(crate) course: Course,
+    below: Course,
+    above: Course,
+}
+
+impl Basis {
+    pub(crate) fn new(model: &Model<f64>, course: Course) -> Self {
+        let by = |gain: f64| course.with_shapes(model, |shape| shape * gain);
+        let (below, above) = (by(1.0 - GAIN_STEP), by(1.0 + GAIN_STEP));
+        Self {
+            course,
+            below,
+            above,
+        }
+    }
+
+    /// Derivative of the course by time.
+    fn velocity(&self, time_s: f64) -> (Vector2<f64>, f64) {
+        let [before, after] = [-TIME_STEP, TIME_STEP].map(|by| self.course.at(time_s + by));
+        let scale = 0.5 / TIME_STEP;
+        (
+            (after.position() - before.position()) * scale,
+            (after.theta - before.theta) * scale,
+        )
+    }
+
+    fn slope(&self, time_s: f64) -> (Vector2<f64>, f64) {
+        let (below, above) = (self.below.at(time_s), self.above.at(time_s));
+        let scale = 0.5 / GAIN_STEP;
+        (
+            (above.position() - below.position()) * scale,
+            (above.theta - below.theta) * scale,
+        )
+    }
+}
+
+/// Deviations of the model itself: position \[m\] and heading \[rad\].
+pub(crate) fn model_errors(course: &Course) -> [f64; 2] {
+    course.oscillation().map(|rms| MODEL_ERROR * rms)
+}
+
+/// A fitted cycle.
+#[derive(Debug, Clone)]
+pub(crate) struct Fit {
+    /// Pose of the middle link at the start.
+    pub(crate) start: swimmer_model::Pose<f64>,
+    /// Measured joint angles over the predicted ones.
+    pub(crate) gain: f64,
+    pub(crate) sigma_gain: f64,
+    /// Drift of the swimmer in the tank's frame \[m/s\].
+    pub(crate) drift: Vector2<f64>,
+    pub(crate) sigma_drift: f64,
+    /// Start of the cycle after its reported start \[s\].
+    delay_s: f64,
+    /// Root mean square of the residuals over their expected deviation.
+    pub(crate) misfit: f64,
+    /// Measured poses at start and end, with their deviations \[m, rad\]; `None` if an end was not seen.
+    pub(crate) ends: Option<([swimmer_model::Pose<f64>; 2], [f64; 2])>,
+}
+
+/// `None` if there are too few poses.
+pub(crate) fn fit(
+    basis: &Basis,
+    poses: &[Pose],
+    began_s: f64,
+    model_errors: [f64; 2],
+) -> Option<Fit> {
+    let first = poses.first()?;
+    if poses.len() < 12 {
+        return None;
+    }
+    let at_first = basis.course.at(first.time_s - began_s);
+    let mut fit = Fit {
+        start: first.placed() * at_first.inverse(),
+        gain: 1.0,
+        sigma_gain: PRIORS[0],
+        drift: Vector2::zeros(),
+        sigma_drift: PRIORS[1],
+        delay_s: 0.0,
+        misfit: 0.0,
+        ends: None,
+    };
+    let mut covariance = SMatrix::<f64, COUNT, COUNT>::identity();
+    for _ in 0..ITERATIONS {
+        let mut normal = SMatrix::<f64, COUNT, COUNT>::zeros();
+        let mut right = SVector::<f64, COUNT>::zeros();
+        normal[(3, 3)] = PRIORS[0].powi(-2);
+        normal[(4, 4)] = PRIORS[1].powi(-2);
+        normal[(5, 5)] = PRIORS[1].powi(-2);
+        normal[(6, 6)] = PRIORS[2].powi(-2);
+        right[3] = (1.0 - fit.gain) * normal[(3, 3)];
+        right[4] = -fit.drift.x * normal[(4, 4)];
+        right[5] = -fit.drift.y * normal[(5, 5)];
+        right[6] = -fit.delay_s * normal[(6, 6)];
+        for pose in poses {
+            let (rows, turn_row, off, turn_off) = fit.residual(basis, pose, began_s);
+            let [weight, turn_weight] = weights(pose, model_errors);
+            normal += rows.transpose() * rows * weight;
+            normal += turn_row.transpose() * turn_row * turn_weight;
+            right += rows.transpose() * off * weight;
+            right += turn_row.transpose() * turn_off * turn_weight;
+        }
+        let factors = normal.cholesky()?;
+        let step = factors.solve(&right);
+        covariance = factors.inverse();
+        fit.start.x += step[0];
+        fit.start.y += step[1];
+        fit.start.theta += step[2];
+        fit.gain += step[3];
+        fit.drift += Vector2::new(step[4], step[5]);
+        fit.delay_s += step[6];
+    }
+    let inflated = |index: usize| (FRAMES_PER_SAMPLE * covariance[(index, index)]).sqrt();
+    fit.sigma_gain = inflated(3);
+    fit.sigma_drift = inflated(4).max(inflated(5));
+    fit.misfit = fit.root_mean_square(basis, poses, began_s, model_errors);
+    fit.ends = fit.measured_ends(basis, poses, began_s);
+    Some(fit)
+}
+
+fn weights(pose: &Pose, [position, heading]: [f64; 2]) -> [f64; 2] {
+    [
+        1.0 / (pose.sigma_position_m.powi(2) + position.powi(2)),
+        1.0 / (pose.sigma_heading_rad.powi(2) + heading.powi(2)),
+    ]
+}
+
+impl Fit {
+    /// Pose that the fit predicts at a time from the start.
+    fn at(&self, basis: &Basis, time_s: f64) -> swimmer_model::Pose<f64> {
+        let course = basis.course.at(time_s - self.delay_s);
+        let (slope, turn_slope) = basis.slope(time_s - self.delay_s);
+        let more = self.gain - 1.0;
+        let local = course.position() + slope * more;
+        let position = self.start.transform(&local) + self.drift * time_s;
+        swimmer_model::Pose::new(
+            position.x,
+            position.y,
+            self.start.theta + course.theta + turn_slope * more,
+        )
+    }
+
+    /// Derivatives of position and heading, and the residuals of both.
+    fn residual(
+        &self,
+        basis: &Basis,
+        pose: &Pose,
+        began_s: f64,
+    ) -> (
+        SMatrix<f64, 2, COUNT>,
+        RowSVector<f64, COUNT>,
+        Vector2<f64>,
+        f64,
+    ) {
+        let time = pose.time_s - began_s;
+        let here = self.at(basis, time);
+        let (slope, turn_slope) = basis.slope(time - self.delay_s);
+        let (velocity, turn_rate) = basis.velocity(time - self.delay_s);
+        let (sin, cos) = self.start.theta.sin_cos();
+        let turned = |v: Vector2<f64>| Vector2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y);
+        let (slope, velocity) = (turned(slope), turned(velocity));
+        let arm = here.position() - self.drift * time - self.start.position();
+        let rows = SMatrix::from([
+            [1.0, 0.0],
+            [0.0, 1.0],
+            [-arm.y, arm.x],
+            [slope.x, slope.y],
+            [time, 0.0],
+            [0.0, time],
+            [-velocity.x, -velocity.y],
+        ]);
+        let turn_row = RowSVector::from([0.0, 0.0, 1.0, turn_slope, 0.0, 0.0, -turn_rate]);
+        let off = Vector2::new(pose.x_m, pose.y_m) - here.position();
+        let turn_off = wrapped_angle(pose.heading_rad - here.theta);
+        (rows, turn_row, off, turn_off)
+    }
+
+    fn root_mean_square(
+        &self,
+        basis: &Basis,
+        poses: &[Pose],
+        began_s: f64,
+        model_errors: [f64; 2],
+    ) -> f64 {
+        let squares = poses.iter().map(|pose| {
+            let (_, _, off, turn_off) = self.residual(basis, pose, began_s);
+            let [weight, turn_weight] = weights(pose, model_errors);
+            off.norm_squared() * weight + turn_off * turn_off * turn_weight
+        });
+        (squares.sum::<f64>() / (3.0 * poses.len() as f64)).sqrt()
+    }
+
+    /// Fitted poses at both ends, each moved by the mean residual near it.
+    fn measured_ends(
+        &self,
+        basis: &Basis,
+        poses: &[Pose],
+        began_s: f64,
+    ) -> Option<([swimmer_model::Pose<f64>; 2], [f64; 2])> {
+        let duration = basis.course.duration_s();
+        let (mut variance, mut turn_variance) = (0.0, 0.0);
+        let mut end = |time_s: f64, from: f64, to: f64| {
+            let near = |pose: &&Pose| (from..=to).contains(&(pose.time_s - began_s));
+            let (mut off, mut turn_off, mut count) = (Vector2::zeros(), 0.0, 0.0);
+            let (mut squares, mut turn_squares) = (0.0, 0.0);
+            for pose in poses.iter().filter(near) {
+                let (_, _, by, turn_by) = self.residual(basis, pose, began_s);
+                off += by;
+                turn_off += turn_by;
+                squares += pose.sigma_position_m.powi(2);
+                turn_squares += pose.sigma_heading_rad.powi(2);
+                count += 1.0;
+            }
+            if count < 3.0 {
+                return None;
+            }
+            variance += FRAMES_PER_SAMPLE * squares / (count * count);
+            turn_variance += FRAMES_PER_SAMPLE * turn_squares / (count * count);
+            let here = self.at(basis, time_s);
+            let moved = here.position() + off / count;
+            let heading = here.theta + turn_off / count;
+            Some(swimmer_model::Pose::new(moved.x, moved.y, heading))
+        };
+        let start = end(0.0, 0.0, END * duration)?;
+        let last = end(duration, (1.0 - END) * duration, duration)?;
+        // The net motion is measured in the frame of the first heading.
+        let lever = (last.position() - start.position()).norm_squared();
+        let sigma = (variance + lever * turn_variance).sqrt();
+        Some(([start, last], [sigma, turn_variance.sqrt()]))
+    }
+}

@@ -1,0 +1,34 @@
+//! The live loop: the robot is tracked while it swims, and what is seen decides what it plays next.
+//!
+//! Sans-IO: poses, events and times in, reports and requests out. Nothing here opens a socket, reads a clock or starts a thread.
+//!
+//! ```text
+//!  poses ──► clock match ──► monitor ──► reports and departures
+//!    │                          │
+//!    └──────► controller ◄──────┘ ──► requests: play one cycle, stop
+//! ```
+//!
+//! - [`Pose`]: tracked pose of the middle link, with its time and its standard deviations.
+//! - [`Course`]: predicted shapes and poses of a play or of a cycle over time.
+//! - [`match_clocks`]: offset between the clocks of robot and cameras, from arrival times ([`Arrivals`]) and the oscillation within
+//!   a cycle.
+//! - [`Monitor`]: one [`CycleReport`] a cycle: displacement and net turn with intervals against the prediction, and a
+//!   [`Departure`] if the robot does not follow it.
+//! - [`Controller`]: drives to poses or holds a heading ([`Goal`]). After each cycle it chooses the next ([`Request`]) and learns
+//!   the robot's gains and drift; it ends with a named reason ([`Ending`]).
+//!
+//! All times of one loop are on one clock: that of the poses, which the caller maps to the host's clock.
+
+mod clock;
+mod controller;
+mod course;
+mod fit;
+mod learning;
+mod monitor;
+mod pose;
+
+pub use clock::{Arrivals, ClockMatch, match_clocks};
+pub use controller::{Controller, Ending, Goal, Options, Request, Target};
+pub use course::Course;
+pub use monitor::{CycleReport, Departure, Likeness, MeasuredMotion, Monitor};
+pub use pose::Pose;

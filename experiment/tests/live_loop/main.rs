@@ -1,0 +1,6 @@
+//! The live loop in virtual time, in a simulated laboratory: clocks, monitor, controller.
+
+mod clock;
+mod go;
+mod monitor;
+mod virtual_lab;

@@ -1,0 +1,220 @@
+//! The monitor over simulated plays: false alarms, and faults within two cycles.
+
+use std::sync::OnceLock;
+
+use crate::virtual_lab::{Lab, Notice, TANK, Truth, model, planner, servos};
+use experiment::{Course, CycleReport, Likeness, Monitor};
+use forecast::{Kind, Member};
+use nalgebra::Vector2;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// All members of full size, from rest with straight joints.
+fn others() -> &'static [(Member, Course)] {
+    static OTHERS: OnceLock<Vec<(Member, Course)>> = OnceLock::new();
+    OTHERS.get_or_init(|| {
+        let planner = planner();
+        let members = Kind::ALL
+            .into_iter()
+            .flat_map(|kind| [1.0, -1.0].map(|amount| planner.member(kind, amount)));
+        let course = |member: Member| {
+            let table = planner.checked_table(&planner.step(member, 1)).unwrap();
+            let rest = Vector2::zeros();
+            (member, Course::of_play(&model(), &table, &servos(), rest))
+        };
+        members.map(course).collect()
+    })
+}
+
+/// Reports of a few single cycles in a row; the robot plays `played` while `expected` is commanded.
+fn reports(
+    truth: Truth,
+    expected: Member,
+    played: Member,
+    cycles: u32,
+    seed: u64,
+) -> Vec<CycleReport> {
+    let planner = planner();
+    let step = planner.step(expected, 1);
+    let table = planner.checked_table(&step).unwrap();
+    let mut rest = Vector2::zeros();
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let heading = rng.random_range(-3.0..3.0);
+    let mut lab = Lab::new(truth, swimmer_model::Pose::new(0.0, 0.0, heading), seed);
+    let mut monitor = Monitor::new(model(), Some(TANK));
+    for (other, course) in others() {
+        if *other != expected {
+            monitor.know(other.word(false), course.clone());
+        }
+    }
+    // Played at the commanded period.
+    let mut reports = Vec::new();
+    for _ in 0..cycles {
+        lab.start(planner.gait(&played), step);
+        let mut resting = None;
+        while resting.is_none_or(|since| lab.now < since + 0.5) {
+            lab.advance();
+            for pose in lab.arrived() {
+                monitor.pose(&pose);
+            }
+            for notice in std::mem::take(&mut lab.notices) {
+                match notice {
+                    Notice::Began(time) => {
+                        let course = Course::of_play(&model(), &table, &servos(), rest);
+                        rest = course.last_shape();
+                        monitor.begin(course, time + rng.random_range(-0.01..0.01));
+                    }
+                    Notice::AtRest => resting = Some(lab.now),
+                }
+            }
+        }
+        reports.extend(monitor.end());
+    }
+    reports
+}
+
+fn member(kind: Kind) -> Member {
+    planner().member(kind, 1.0)
+}
+
+/// Robots that are as calibrated as a campaign leaves them: χ within 1 %, gains within 0.5 %.
+fn calibrated(seed: u64) -> Truth {
+    let mut rng = ChaCha8Rng::seed_from_u64(7000 + seed);
+    let mut draw = |most: f64| 1.0 + rng.random_range(-most..most);
+    Truth {
+        chi_factor: draw(0.01),
+        gain: [draw(0.005), draw(0.005)],
+        blanks: 0.1,
+        ..Truth::faultless()
+    }
+}
+
+#[test]
+fn a_hundred_faultless_runs_raise_at_most_one_alarm() {
+    let mut alarms = Vec::new();
+    let mut outside = [0, 0];
+    let mut measured = 0;
+    for (seed, kind) in (0..100).zip(Kind::ALL.into_iter().cycle()) {
+        for report in reports(calibrated(seed), member(kind), member(kind), 5, seed) {
+            if let Some(departure) = report.departure {
+                alarms.push((seed, kind, departure));
+            }
+            if let Some(motion) = report.measured {
+                measured += 1;
+                // By 1 % of error in χ the prediction itself is off.
+                let by_model = 0.02 * report.predicted.position().norm();
+                let off = (motion.x_m - report.predicted.x).hypot(motion.y_m - report.predicted.y);
+                outside[0] += u32::from(off > 1.25 * motion.interval_m + by_model);
+                let turn_off = (motion.turn_rad - report.predicted.theta).abs();
+                let by_model = 0.02 * report.predicted.theta.abs() + 0.002;
+                outside[1] += u32::from(turn_off > motion.interval_rad + by_model);
+            }
+        }
+    }
+    println!(
+        "100 faultless runs of 5 cycles: {} alarms {alarms:?}; of {measured} net motions {} and {} turns outside",
+        alarms.len(),
+        outside[0],
+        outside[1]
+    );
+    assert!(alarms.len() <= 1, "{alarms:?}");
+    assert!(
+        outside.iter().all(|count| *count * 20 < measured),
+        "{outside:?} of {measured}"
+    );
+}
+
+/// Seeds of 20 in which two cycles are enough to name the fault.
+fn flagged(
+    name: &str,
+    truth: impl Fn(Truth) -> Truth,
+    kind: Kind,
+    played: Member,
+    is: impl Fn(&Likeness) -> bool,
+) {
+    let mut seen = 0;
+    let mut other = Vec::new();
+    for seed in 0..20 {
+        let reports = reports(truth(calibrated(seed)), member(kind), played, 2, seed);
+        let departure = reports.into_iter().find_map(|report| report.departure);
+        match departure {
+            Some(departure) if is(&departure.likeness) => seen += 1,
+            found => other.push((seed, found)),
+        }
+    }
+    println!("{name}, {kind:?}: flagged within two cycles in {seen} of 20 {other:?}");
+    assert_eq!(seen, 20, "{name}: {other:?}");
+}
+
+#[test]
+fn a_gain_five_percent_low_is_flagged() {
+    for kind in Kind::ALL {
+        let low = |truth: Truth| Truth {
+            gain: truth.gain.map(|gain| gain * 0.95),
+            ..truth
+        };
+        let is = |likeness: &Likeness| matches!(likeness, Likeness::Gain(gain) if (gain - 0.95).abs() < 0.015);
+        flagged("gain -5 %", low, kind, member(kind), is);
+    }
+}
+
+/// A turn is over after 1.5 s: what drifts less than 2 mm meanwhile is within the errors of its prediction.
+#[test]
+fn a_drift_is_flagged() {
+    for (kind, speed) in [
+        (Kind::Forward, 4e-4),
+        (Kind::Left, 4e-4),
+        (Kind::Turn, 15e-4),
+    ] {
+        let drifts = |truth: Truth| Truth {
+            drift: [speed * 0.6, -speed * 0.8, 0.0],
+            ..truth
+        };
+        let is = |likeness: &Likeness| {
+            matches!(likeness, Likeness::Drift([x, y])
+                if (x - speed * 0.6).hypot(y + speed * 0.8) < 0.4 * speed)
+        };
+        let name = format!("drift of {:.1} mm/s", speed * 1e3);
+        flagged(&name, drifts, kind, member(kind), is);
+    }
+}
+
+#[test]
+fn a_blocked_joint_is_flagged() {
+    for joint in [0, 1] {
+        let blocked = |truth: Truth| Truth {
+            blocked: Some((joint, 0.0)),
+            ..truth
+        };
+        let number = if joint == 0 { 1 } else { 2 };
+        let is = |likeness: &Likeness| *likeness == Likeness::BlockedJoint(number);
+        for kind in Kind::ALL {
+            flagged(
+                &format!("joint {number} blocked"),
+                blocked,
+                kind,
+                member(kind),
+                is,
+            );
+        }
+    }
+}
+
+#[test]
+fn a_wrong_gait_is_flagged_and_named() {
+    let same = |truth: Truth| truth;
+    let cases = [
+        (Kind::Forward, planner().member(Kind::Left, 1.0), "left"),
+        (
+            Kind::Forward,
+            planner().member(Kind::Forward, -1.0),
+            "backward",
+        ),
+        (Kind::Left, planner().member(Kind::Turn, 1.0), "turn-left"),
+        (Kind::Turn, planner().member(Kind::Turn, -1.0), "turn-right"),
+    ];
+    for (kind, played, name) in cases {
+        let is = |likeness: &Likeness| *likeness == Likeness::WrongGait(Some(name.to_owned()));
+        flagged(&format!("{name} instead"), same, kind, played, is);
+    }
+}
