@@ -80,14 +80,6 @@ pub(crate) fn seconds(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A power above zero on the command line, in watts.
-pub(crate) fn watts(text: &str) -> Result<f64, String> {
-    match f64::from_str(text.strip_suffix('W').unwrap_or(text).trim_end()) {
-        Ok(power) if power.is_finite() && power > 0.0 => Ok(power),
-        _ => Err("write a number of watts above zero, as 0.5".to_owned()),
-    }
-}
-
 /// A longer time on the command line, as `90min`, `2h` or seconds; in seconds.
 pub(crate) fn time(text: &str) -> Result<f64, String> {
     let units = [("min", 60.0), ("h", 3600.0), ("s", 1.0)];

@@ -23,8 +23,6 @@ mod subject;
 mod symmetry;
 mod variation;
 
-use std::cell::Cell;
-
 use nalgebra::Vector2;
 use swimmer_files::{AnyGait, Bounds, GaitFile, Objective};
 use swimmer_model::{InvalidSamples, InvalidSwimmer, Model, Swimmer, Tolerance, swim};
@@ -35,7 +33,7 @@ use crate::certificate::{
 use crate::cycle::Cycle;
 use crate::optimal_gait::OptimalGait;
 use crate::region::Region;
-use crate::speed::{MadeFor, certify_joined, certify_speed};
+use crate::speed::{certify_joined, certify_speed, turned_per_period};
 pub(crate) use ascent::ways_up;
 use grid::{Degree, Grid};
 use resolution::with_uncertainty;
@@ -104,6 +102,32 @@ pub fn certify(
     certify_swum((swimmer, objective, bounds), gait, None)
 }
 
+/// Returns the period in which a gait is the farthest, as the angle \[rad\] by which the faster servo turns in it at its full rate. Returns
+/// `None` if it passes for no period.
+///
+/// A fastest gait that is scaled down is often still the farthest in its own, shorter period, although a longer cycle is faster.
+///
+/// # Errors
+/// As [`certify`].
+pub fn farthest_in_period(
+    swimmer: &Swimmer<f64>,
+    gait: &GaitFile,
+    bounds: &Bounds,
+) -> Result<Option<f64>, CertifyError> {
+    let timed = GaitFile {
+        optimal_period: Some(1.0),
+        bounds: *bounds,
+        ..gait.clone()
+    };
+    if !certify(swimmer, &timed, Objective::Speed, bounds)?.pass() {
+        return Ok(None);
+    }
+    let model = Model::new(&swimmer.of_unit_length())?;
+    let region = Region::new(bounds, &swimmer.links);
+    let curve = AnyGait::from_file(&timed)?;
+    Ok(turned_per_period(&model, (&timed, &curve), &region))
+}
+
 /// As [`certify`], of a gait whose displacement over L is known.
 fn certify_swum(
     of @ (swimmer, objective, _): (&Swimmer<f64>, Objective, &Bounds),
@@ -111,8 +135,7 @@ fn certify_swum(
     swum: Option<Vector2<f64>>,
 ) -> Result<Certificate, CertifyError> {
     let model = Model::new(&swimmer.of_unit_length())?;
-    let made_for = Cell::new(None);
-    let asked = |gait: &GaitFile, swum| of_samples((&model, &made_for), of, gait, swum);
+    let asked = |gait: &GaitFile, swum| of_samples(&model, of, gait, swum);
     AnyGait::from_file(gait)?;
     // Across whose heading a gait moves and where it joins others is asked of the first sample; of all else it says nothing.
     let begun = (objective != Objective::Sideways && !objective.is_joined())
@@ -129,7 +152,7 @@ fn certify_swum(
 
 /// As [`certify_swum`], whatever the samples leave open.
 fn of_samples(
-    (model, made_for): (&Model<f64>, &Cell<Option<MadeFor>>),
+    model: &Model<f64>,
     (swimmer, objective, bounds): (&Swimmer<f64>, Objective, &Bounds),
     gait: &GaitFile,
     swum: Option<Vector2<f64>>,
@@ -148,7 +171,7 @@ fn of_samples(
         let region = Region::new(bounds, &swimmer.links);
         let timed = (&bounded, &curve);
         let joined = certify_joined(model, timed, &region, objective);
-        return Ok(joined.unwrap_or_else(|| certify_speed(model, timed, &region, made_for)));
+        return Ok(joined.unwrap_or_else(|| certify_speed(model, timed, &region)));
     }
     let clockwise = turning_number(&gait.phi) < 0.0;
     let reversed = clockwise.then(|| gait.reversed());

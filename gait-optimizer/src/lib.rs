@@ -28,8 +28,7 @@
 //! | `efficiency` | the small and the large Lighthill gait: Fourier series, then `extremal`, bounds followed |
 //! | `extremal` | extremals of the efficiency as curves of shapes: reduced flow, shooting over arcs, second-order test |
 //! | `cycle` | a full cycle at constant power, of a closed curve or of a quarter mirrored twice |
-//! | `speed` | the fastest gait of servos with a limit on their rates, and what several limits share with it |
-//! | `limited` | the fastest gait within limits on rates, power and torque |
+//! | `speed` | the fastest gait of servos with a limit on their rates |
 //! | `turning` | the simple closed gait that turns most: round a region of the curvature |
 //! | `robust` | gaits for a swimmer that is not known exactly: best worst case, best mean |
 //! | `member` | one swimmer of an uncertain family, with what its servos turn over what they are told |
@@ -80,7 +79,6 @@ mod efficiency;
 mod extremal;
 mod height_map;
 mod immobile;
-mod limited;
 mod loops;
 mod member;
 mod momentum;
@@ -99,7 +97,7 @@ mod turning;
 pub use atlas::{Atlas, AtlasError, AtlasProblem, Optimum, StartCurves, atlas, atlas_watched};
 pub use batch::{Batch, ConnectionsAndPowers};
 pub use certificate::{Certificate, Check, Condition, Verdict};
-pub use certify::{CertifyError, certify};
+pub use certify::{CertifyError, certify, farthest_in_period};
 pub use continuation::{
     Continuation, ContinuationError, ContinuationProblem, Event, EventKind, Fold, OtherSide,
     Parameter, Point, Start, continuation,
@@ -116,7 +114,6 @@ pub use height_map::{
     AreaRule, Convergence, Frame, Grid, HeightMap, HeightMapError, LevelCurve, Row,
 };
 pub use immobile::Immobile;
-pub use limited::{Limit, Limited, LimitedError, LimitedProblem, Torque, fastest_within};
 pub use optimal_gait::{EfficiencyFigures, OptimalGait};
 pub use parallel::Watch;
 pub use problem::InvalidProblem;

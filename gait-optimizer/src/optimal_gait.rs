@@ -30,6 +30,8 @@ pub struct OptimalGait {
     pub swimmer: Swimmer<f64>,
     /// The bounds it obeys.
     pub bounds: Bounds,
+    /// Period \[s\] in which it is the farthest gait; `None` if the period was free.
+    pub optimal_period: Option<f64>,
     /// Net displacement X of a full cycle over L, signed, along the middle link's heading at the first sample.
     pub displacement_over_length: f64,
     /// The same in metres.
@@ -79,6 +81,7 @@ impl OptimalGait {
             objective,
             swimmer: *swimmer,
             bounds: *bounds,
+            optimal_period: None,
             displacement_over_length: over_length.x,
             displacement: over_length.x * swimmer.total_length(),
             lateral_over_length: over_length.y,
@@ -198,6 +201,7 @@ impl OptimalGait {
             objective: self.objective,
             swimmer_name: Some(swimmer_name.to_owned()),
             swimmer_hash: Some(SwimmerHash::of(&self.swimmer)),
+            optimal_period: self.optimal_period,
             ..self.cycle.file(self.bounds)
         }
     }

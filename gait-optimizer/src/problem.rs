@@ -13,7 +13,8 @@ pub enum InvalidProblem {
     Swimmer(#[from] InvalidSwimmer),
     /// A gait with the paper's two symmetries rests on front and back links being alike.
     #[error(
-        "the side links differ (front {front} m, back {back} m): a gait with the paper's two symmetries needs them alike"
+        "the side links differ (front {front} m, back {back} m): a gait with the paper's two symmetries needs them alike; `swimmer atlas` \
+         finds gaits of swimmers like this"
     )]
     Asymmetric {
         /// l₁ \[m\].

@@ -4,13 +4,13 @@ mod plane;
 mod speed_direct;
 
 use gait_optimizer::{
-    Bounds, HeadingRule, Joined, Over, SpeedProblem, SteerProblem, Uncertainty, certify, fastest,
-    front, robust_speed, steer,
+    Bounds, HeadingRule, Joined, Over, SpeedProblem, SteerProblem, Uncertainty, certify,
+    farthest_in_period, fastest, front, robust_speed, steer,
 };
 use nalgebra::Vector2;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use swimmer_files::AnyGait;
+use swimmer_files::{AnyGait, GaitFile};
 use swimmer_model::{Gait as _, Links, Model, Swimmer};
 
 use plane::Pose;
@@ -86,11 +86,16 @@ fn joined_by_two_methods(swimmer: Swimmer<f64>, max_angle: f64, shape: [f64; 2],
         let file = joined.gait_file("", false);
         let gait = AnyGait::from_file(&file).unwrap();
         let circle = |s: f64| Vector2::new(s.cos(), s.sin()) * max_angle;
-        // Rough circles, and the gait itself with a wave on it.
-        let curves: [&dyn Fn(f64) -> Vector2<f64>; 3] = [
+        // Rough circles, and the gait itself with waves on it: from some of them the method leaves for a slower gait.
+        let waved = |s: f64, lobes: f64, size: f64| {
+            gait.at(s / std::f64::consts::TAU).phi + circle(lobes * s) * size
+        };
+        let curves: [&dyn Fn(f64) -> Vector2<f64>; 5] = [
             &|s| circle(s) * 0.85,
             &|s| Vector2::repeat(0.6 * max_angle) + circle(s) * 0.33,
-            &|s| gait.at(s / std::f64::consts::TAU).phi + circle(5.0 * s) * 0.005,
+            &|s| waved(s, 5.0, 0.005),
+            &|s| waved(s, 3.0, 0.002),
+            &|s| waved(s, 7.0, 0.001),
         ];
         curves
             .into_iter()
@@ -354,7 +359,7 @@ fn a_wider_bound_is_never_slower_over_many() {
 
 /// Sideways, long singular arcs come to bounds at full rate, and take more bends than others do: chains that follow them less closely
 /// are not certified, and where they are all that is met there was no answer, or one that is 11 % slower. The direct method, from
-/// the gait with a wave on it, comes to a polygon that is nearly as fast, and none that is faster.
+/// the gait with waves on it, converges to a polygon that is nearly as fast, and to none that is faster.
 #[test]
 fn long_singular_arcs_are_followed_closely() {
     let by_two_methods = |[middle, front, back]: [f64; 3], chi: f64, max_angle: f64| {
@@ -371,11 +376,16 @@ fn long_singular_arcs_are_followed_closely() {
         let problem = problem(swimmer, max_angle, 0).led(HeadingRule::Sideways);
         let found = fastest(&problem).unwrap();
         let gait = AnyGait::from_file(&found.gait.gait_file("")).unwrap();
-        let waved = |s: f64| {
-            let wave = Vector2::new((5.0 * s).cos(), (5.0 * s).sin()) * 0.02;
-            gait.at(s / std::f64::consts::TAU).phi + wave
+        let from_wave = |(lobes, size): (f64, f64)| {
+            let waved = |s: f64| {
+                let wave = Vector2::new((lobes * s).cos(), (lobes * s).sin()) * size;
+                gait.at(s / std::f64::consts::TAU).phi + wave
+            };
+            left(Direct::new(&problem, 24, waved)).climb()
         };
-        let climbed = left(Direct::new(&problem, 24, waved)).climb().unwrap();
+        // From some waves the method does not converge.
+        let waves = [(5.0, 0.02), (3.0, 0.01), (7.0, 0.005)];
+        let climbed = waves.into_iter().filter_map(from_wave).fold(0.0, f64::max);
         let speed = found.speed_over_length;
         println!("{max_angle} rad: polish {speed:.12}, direct {climbed:.12}");
         let share = climbed / speed;
@@ -503,7 +513,7 @@ fn the_front_bends_at_the_fastest() {
     for pair in told.windows(2) {
         assert!(pair[0].distance_over_length <= pair[1].distance_over_length);
         let [before, after] = [pair[0], pair[1]].map(|gait| gait.speed_over_length);
-        assert!(before.max(after) < best.speed_over_length);
+        assert!(before.max(after) < best.speed_over_length * (1.0 + 1e-9));
         // Faster up to the best, slower beyond it.
         if pair[1].period < best.period {
             assert!(after > before);
@@ -512,6 +522,70 @@ fn the_front_bends_at_the_fastest() {
     let near = |gait: &&&gait_optimizer::Fastest| (gait.period / best.period - 1.0).abs() < 0.05;
     let beside = told.iter().find(near).unwrap();
     assert!(beside.speed_over_length > best.speed_over_length * 0.998);
+}
+
+/// A fastest gait that is scaled down may still be the farthest in its own period, although a longer one is faster. It passes only if its
+/// file states that period. Purcell's touches no bound within 2 rad and passes at every scale.
+#[test]
+fn scaled_gaits_are_not_the_fastest() {
+    let (mut scaled, mut farthest) = (0, 0);
+    for (swimmer, max_angle) in [
+        (Swimmer::purcell(), 2.0),
+        (Swimmer::robot(), 2.0),
+        (Swimmer::robot(), 2.5),
+    ] {
+        let found = fastest(&problem(swimmer, max_angle, 12)).unwrap();
+        let file = found.gait.gait_file("");
+        assert_eq!(file.optimal_period, None);
+        for k in 0..28 {
+            let scale = 0.4 + 0.02 * f64::from(k);
+            let smaller = GaitFile {
+                phi: file.phi.iter().map(|phi| phi * scale).collect(),
+                ..file.clone()
+            };
+            let verdict = |file: &GaitFile| {
+                let certificate = certify(&swimmer, file, file.objective, &file.bounds);
+                certificate.unwrap().pass()
+            };
+            assert!(!verdict(&smaller), "{max_angle} rad, {scale} times");
+            scaled += 1;
+            let period = farthest_in_period(&swimmer, &smaller, &file.bounds).unwrap();
+            if let Some(period) = period {
+                farthest += 1;
+                assert!((period / (found.period * scale) - 1.0).abs() < 1e-9);
+                assert!(verdict(&GaitFile {
+                    optimal_period: Some(period),
+                    ..smaller
+                }));
+            }
+        }
+    }
+    println!("{farthest} of {scaled} scaled gaits are the farthest in their own period");
+    assert_eq!(farthest, 28);
+}
+
+/// The displacement grows with the period, since several laps of a shorter cycle, and rests, are feasible.
+#[test]
+fn a_longer_period_leads_no_less_far() {
+    let of = |period: f64| {
+        let problem = SpeedProblem {
+            period: Some(period),
+            ..problem(Swimmer::robot(), 2.5, SpeedProblem::STARTS)
+        };
+        fastest(&problem).unwrap()
+    };
+    let mut before = 0.0;
+    for period in [5.0, 6.0, 7.0, 10.0, 18.0, 40.0] {
+        let found = of(period);
+        let moves = found.gait.optimal_period.unwrap();
+        assert!((moves + found.rest - period).abs() < 1e-9 * period);
+        assert!(found.gait.certificate.pass() && found.gait.arcs.len() <= 16);
+        assert!(found.distance_over_length >= before, "{period} s");
+        before = found.distance_over_length;
+    }
+    // Twice the farthest in half the time.
+    let twice = 2.0 * of(5.0).distance_over_length;
+    assert!(of(10.0).distance_over_length > twice * (1.0 - 1e-9));
 }
 
 /// Cold from the project's own first guesses, and from many starts; printed, not asserted.

@@ -55,6 +55,7 @@ def certify(
     gait: Gait | Text,
     *,
     objective: Literal["displacement", "efficiency", "turning", "sideways", "speed"] | None = None,
+    fixed_period: bool = False,
     max_angle: Angle | None = None,
     min_angle: Angle | None = None,
     sector: bool = False,
@@ -64,7 +65,8 @@ def certify(
 ) -> Result:
     """Checks a gait against the necessary conditions: `pass_`, `verdict` and `checks`, each with its number.
 
-    Objective and bounds are those of the gait's file unless told otherwise. A gait that fails is an answer, not an error.
+    Objective and bounds are those of the gait's file unless given. A gait for speed has to be the fastest of any period unless its file
+    states a period; with `fixed_period` it has to be the farthest in its own. A gait that fails is a result, not an error.
     """
     with Run("certify") as run:
         run.swimmer(swimmer)
@@ -72,6 +74,7 @@ def certify(
         run.options(
             {
                 "objective": objective,
+                "fixed_period": fixed_period,
                 "max_angle": max_angle,
                 "min_angle": min_angle,
                 "sector": sector,

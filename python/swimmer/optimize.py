@@ -88,8 +88,6 @@ def speed(
     swimmer: Swimmer | Text,
     *,
     max_rate: Angle | Sequence[Angle] | None = None,
-    power: float | None = None,
-    torque: bool = False,
     heading: Literal["any", "forward", "sideways"] = "any",
     period: float | None = None,
     max_angle: Angle | None = None,
@@ -103,7 +101,7 @@ def speed(
 ) -> OptimalGait:
     """The fastest gait under servos' rates (an angle a second, one for both or one each): `speed_over_length_per_s`, `period_s`, …
 
-    `power` is the most that the servos give, in watts; `torque` holds each of them to the torque and the no-load rate of the swimmer file, which names its fluid. `front` is a new file (.svg or .csv): displacement of a cycle against speed, over the period.
+    `front` is a new file (.svg or .csv): displacement of a cycle against speed, over the period.
     """
     return _optimal("speed", swimmer, locals())
 

@@ -86,6 +86,8 @@ pub struct GaitFile {
     pub swimmer_hash: Option<SwimmerHash>,
     /// The bounds it was optimised under.
     pub bounds: Bounds,
+    /// Period \[s\] in which a gait for speed is the farthest; `None` if it is the fastest of any period.
+    pub optimal_period: Option<f64>,
     /// Its arcs in order, where known.
     pub arcs: Vec<GaitArc>,
     /// Fractions of the period at which the direction in the (φ₁, φ₂) plane jumps.

@@ -46,6 +46,7 @@ fn circle(samples: usize) -> GaitFile {
         corners: vec![0.0, u[3]],
         u,
         phi,
+        ..GaitFile::default()
     }
 }
 
@@ -188,6 +189,7 @@ prop_compose! {
         max_angle in any_angle(), min_angle in any_angle(), sector in any::<bool>(), no_overlap in any::<bool>(), clearance in prop::sample::select(vec![0.0, 1e-3, 0.02]),
         name in proptest::option::of("[a-zé][a-z é]{0,10}[a-z]"),
         corner in any::<prop::sample::Index>(),
+        optimal_period in proptest::option::of(1e-3f64..1e4),
     ) -> GaitFile {
         let total: f64 = steps.iter().map(|step| step.0).sum();
         let mut u = vec![0.0];
@@ -205,7 +207,7 @@ prop_compose! {
         let swimmer_name = name.map(|name| name.split_whitespace().collect::<Vec<_>>().join(" "));
         GaitFile {
             objective, swimmer_name, swimmer_hash: None, bounds: Bounds { max_angle, min_angle, sector, no_overlap, clearance },
-            arcs, corners, u, phi,
+            arcs, corners, u, phi, optimal_period,
         }
     }
 }

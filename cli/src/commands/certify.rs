@@ -1,8 +1,8 @@
-//! `swimmer certify`: holds any gait against the necessary conditions of an optimum.
+//! `swimmer certify`: checks any gait against the necessary conditions of an optimum.
 
 use std::fmt;
 
-use gait_optimizer::{Certificate, CertifyError, Objective, Verdict, certify};
+use gait_optimizer::{Certificate, CertifyError, Objective, Verdict, certify, farthest_in_period};
 use serde::Serialize;
 use swimmer_files::{AnyGait, Bounds, GaitFile, GaitSpec};
 
@@ -15,7 +15,9 @@ use crate::quantity;
 
 /// Hold a gait against the necessary conditions of an optimum, each with its number and tolerance
 ///
-/// Objective and bounds are those of the gait file unless told otherwise: naming one bound replaces all of the file's.
+/// Objective and bounds are those of the gait file unless given here: naming one bound replaces all of the file's. A gait for speed
+/// has to be the fastest of any period, unless its file states the period for which it is optimal; if it is only the farthest in its own
+/// period, that period is named.
 /// A gait that fails, or that its samples leave undecided, ends with status 1, its whole certificate printed.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Certify {
@@ -28,18 +30,25 @@ pub(crate) struct Certify {
     /// displacement, efficiency, turning, sideways or speed
     #[arg(long, value_name = "OBJECTIVE", value_parser = objective)]
     objective: Option<Objective>,
+    /// For speed: certify the gait as the farthest in its own period, instead of the fastest of any period
+    #[arg(long)]
+    fixed_period: bool,
     #[command(flatten)]
     bounds: QuarterBounds,
 }
 
-/// Samples that a circle or a square is asked by.
+/// Samples of a circle or a square.
 const SAMPLES: usize = 1024;
 
 impl Certify {
-    /// Certifies the gait and answers.
+    /// Certifies the gait and prints the certificate.
     pub(crate) fn run(self, output: Output) -> Outcome {
         let swimmer = load_swimmer(&self.swimmer)?;
-        let file = self.load()?;
+        let mut file = self.load()?;
+        if self.fixed_period {
+            // The conditions are the same for every rate of the servos, and so for every length of the period.
+            file.optimal_period.get_or_insert(1.0);
+        }
         say_if_for_another(&swimmer, &file, &self.gait);
         let objective = self.objective.unwrap_or(file.objective);
         if objective == Objective::Unspecified {
@@ -72,7 +81,19 @@ impl Certify {
         let failed = checks.iter().filter(|check| !check.pass).count();
         let of = checks.len();
         let verdict = certificate.verdict();
-        output.answer(&Answer { title, certificate });
+        let own_period = objective == Objective::Speed
+            && file.optimal_period.is_none()
+            && verdict != Verdict::Pass;
+        let passes_for_period_rad = if own_period {
+            farthest_in_period(&swimmer.swimmer, &file, &bounds)?
+        } else {
+            None
+        };
+        output.answer(&Answer {
+            title,
+            certificate,
+            passes_for_period_rad,
+        });
         match verdict {
             Verdict::Pass => Ok(()),
             Verdict::Fail => Err(Failure::Answered(format!(
@@ -85,7 +106,7 @@ impl Certify {
         }
     }
 
-    /// The gait with all that its file tells.
+    /// Loads the gait with everything that its file states.
     fn load(&self) -> Outcome<GaitFile> {
         match &self.gait {
             GaitSpec::File { path, reversed } => {
@@ -107,7 +128,7 @@ fn objective(text: &str) -> Result<Objective, String> {
 }
 
 impl From<CertifyError> for Failure {
-    /// Nothing can be asked: bad input.
+    /// No condition can be evaluated: bad input.
     fn from(error: CertifyError) -> Self {
         Self::bad_input(&error)
     }
@@ -119,6 +140,9 @@ struct Answer {
     title: String,
     #[serde(flatten)]
     certificate: Certificate,
+    /// Angle that the faster servo turns in the period for which the gait goes farthest, if it is not the fastest of any period.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    passes_for_period_rad: Option<f64>,
 }
 
 impl fmt::Display for Answer {
@@ -148,6 +172,14 @@ impl fmt::Display for Answer {
             }
             _ => format!("{failed} of {of} conditions fail"),
         };
-        write!(f, "{}\n{table}\n  {verdict}", self.title)
+        write!(f, "{}\n{table}\n  {verdict}", self.title)?;
+        if let Some(turned) = self.passes_for_period_rad {
+            write!(
+                f,
+                "\n  it is the farthest gait in its own period ({turned:.4} rad at the full rate of the faster servo), but a gait of \
+                 another period is faster; --fixed-period certifies it as the farthest"
+            )?;
+        }
+        Ok(())
     }
 }

@@ -181,20 +181,6 @@ conditions! {
     NoBetterCorners: "second_variation_least" >= 0.0;
     /// It has arcs enough to be asked.
     EnoughArcs: "arcs_least" >= 3.0;
-    /// No limit on rate, power or torque is overstepped, relatively.
-    KeepsLimits: "limit_overstepped" <= 1e-6;
-    /// Some limit is always taken, as a share of it.
-    TakesLimit: "limits_taken_least" >= 1.0 - 1e-6;
-    /// The costate equations under such limits.
-    CostateWithinLimits: "costate" <= 1e-6;
-    /// H with that costate.
-    HamiltonianWithinLimits: "hamiltonian" <= 1e-6;
-    /// A limit pushes back.
-    LimitMultiplier: "limit_multiplier_least" >= -1e-5;
-    /// A bound does.
-    BoundWithinLimits: "bound_multiplier_least" >= -1e-5;
-    /// No push of the curve that keeps what binds gains to second order.
-    NoFasterNeighbour: "second_variation_least" >= 0.0;
 }
 
 impl Condition {

@@ -6,8 +6,9 @@
 use nalgebra::{DMatrix, DVector, Vector2, Vector3};
 use swimmer_model::Model;
 
-use super::quadrature::{Rule, legendre};
+use super::quadrature::Rule;
 use crate::batch::{Batch, Connection, First};
+use crate::height_map::legendre::legendre;
 use crate::region::{Clearance, Piece};
 
 /// Most coefficients of a bent arc.
@@ -22,8 +23,6 @@ pub(crate) enum Shape {
     Straight,
     /// A straight line, with `s(1 − s) Σ_k b_k P_k(2s − 1)` added to this joint's angle.
     Bent { joint: usize, bends: usize },
-    /// The same with `bends` coefficients of each joint's angle, those of the first joint first.
-    Free { bends: usize },
     /// The curve on which a piece of the clearance vanishes, as a graph over joint `pace`.
     Along {
         clearance: Clearance,
@@ -52,7 +51,6 @@ impl Shape {
     pub(crate) fn bends(&self) -> usize {
         match self {
             Self::Bent { bends, .. } => *bends,
-            Self::Free { bends } => 2 * bends,
             _ => 0,
         }
     }
@@ -82,11 +80,7 @@ impl Shape {
             Self::Bent {
                 joint,
                 bends: count,
-            } => bend(&mut place, joint, 0, (count, bends), s),
-            Self::Free { bends: count } => {
-                bend(&mut place, 0, 0, (count, bends), s);
-                bend(&mut place, 1, count, (count, bends), s);
-            }
+            } => bend(&mut place, joint, (count, bends), s),
             Self::Along {
                 clearance,
                 piece,
@@ -106,9 +100,7 @@ impl Shape {
     ) -> Jet {
         // Most arcs have no bends, and most of the time is spent here.
         match self {
-            Self::Bent { .. } | Self::Free { .. } => {
-                self.sized::<MOST_PARAMETERS>(model, rule, ends, bends)
-            }
+            Self::Bent { .. } => self.sized::<MOST_PARAMETERS>(model, rule, ends, bends),
             _ => self.sized::<4>(model, rule, ends, bends),
         }
     }
@@ -203,11 +195,10 @@ impl Shape {
     }
 }
 
-/// Adds to one joint's angle the bends of it, `count` of all from number `first` on.
+/// Adds `count` bends to the angle of one joint.
 fn bend<const P: usize>(
     place: &mut Place<P>,
     joint: usize,
-    first: usize,
     (count, bends): (usize, &[f64]),
     s: f64,
 ) {
@@ -223,12 +214,12 @@ fn bend<const P: usize>(
             x * slope_before + k as f64 * p[k - 1]
         };
         slope_before = slope;
-        let bend = bends.get(first + k).copied().unwrap_or(0.0);
+        let bend = bends.get(k).copied().unwrap_or(0.0);
         let (up, along) = (hump * value, -x * value + 2.0 * hump * slope);
         place.phi[joint] += bend * up;
         place.rate[joint] += bend * along;
-        place.d_phi[4 + first + k][joint] = up;
-        place.d_rate[4 + first + k][joint] = along;
+        place.d_phi[4 + k][joint] = up;
+        place.d_rate[4 + k][joint] = along;
     }
 }
 
@@ -297,8 +288,7 @@ mod tests {
         let model = Model::new(&Swimmer::<f64>::robot().of_unit_length()).unwrap();
         let rule = Rule::new(24);
         let bent = Shape::Bent { joint: 1, bends: 3 };
-        let free = Shape::Free { bends: 2 };
-        for shape in [Shape::Straight, bent, free, clearance()] {
+        for shape in [Shape::Straight, bent, clearance()] {
             let value = |z: &[f64; 8]| {
                 let ends = [Vector2::new(z[0], z[1]), Vector2::new(z[2], z[3])];
                 shape.jet(&model, &rule, &ends, &z[4..])

@@ -6,14 +6,10 @@
 //! where a corner rests on a bound, follows from the integrals of h between switches by least squares.
 
 mod affine;
-mod costate;
 mod from_anywhere;
 mod legs;
 mod second_order;
-mod second_variation;
 mod switching;
-mod taken;
-mod within_limits;
 
 use nalgebra::Vector2;
 use swimmer_files::{AnyGait, ArcKind, Bounds, GaitFile};
@@ -25,10 +21,9 @@ use crate::certificate::{Certificate, Check, Condition, SeenBy, again_within};
 use crate::cycle::Cycle;
 use crate::member::Member;
 use crate::region::Region;
-pub(crate) use from_anywhere::{MadeFor, certify_speed};
+pub(crate) use from_anywhere::{certify_speed, turned_per_period};
 use legs::{Leg, Legs};
 use switching::Switching;
-pub(crate) use within_limits::{within_its_own, within_limits};
 
 /// A corner this close to a bound rests on it \[rad, or over L\].
 pub(super) const RESTS: f64 = 1e-8;
@@ -95,7 +90,6 @@ pub(crate) fn certificate(
         model,
         region,
         rates: legs.rates,
-        beyond: Vec::new(),
         // Times are shares of the period here.
         asked: Asked {
             period: asked.period.map(|_| 1.0),

@@ -38,7 +38,7 @@ pub(super) fn expansion(
         let of = (layout, model, rule);
         // |d|, its slope and its bend from those of ln |d|; times matter to none of them.
         let share = weight * net.distance();
-        let hessian = chain::hessian(of, &jets, &turned, weights, true);
+        let hessian = chain::hessian(of, &jets, &turned, weights);
         bend += hessian * (share * gain.powi(2));
         bend.ger(share * gain.powi(2), &gradient, &gradient, 1.0);
         slope += gradient * (share * gain);

@@ -51,7 +51,7 @@ pub enum SpeedError {
     /// No gait of a kind to steer by.
     #[error(
         "no fastest {kind} gait to steer by under these bounds ({bounds}): {starts} starts led to {chains} certified gaits of this \
-         kind, and none through a common shape; try more starts, wider bounds, or another shape"
+         kind, and none through a common shape; try wider bounds or another shape"
     )]
     NoJoinedGait {
         /// Which kind.
@@ -66,7 +66,7 @@ pub enum SpeedError {
     /// None was found and certified.
     #[error(
         "no fastest gait under these bounds ({bounds}): {starts} starts led to {chains} chains of arcs, none of which can be \
-         certified{}; try more starts, or wider bounds",
+         certified{}; try wider bounds",
         uncertified.map_or_else(String::new, |speed| format!(" (the fastest swims {speed:.6} L a second)"))
     )]
     NoGait {

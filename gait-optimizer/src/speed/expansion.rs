@@ -18,8 +18,6 @@ pub(super) struct Expansion {
     pub(super) slopes: DMatrix<f64>,
     /// Second derivatives of the Lagrangian; 1 where its multipliers are not known.
     pub(super) hessian: DMatrix<f64>,
-    /// What each multiplier weighs in the stationarity, where that is not its slope.
-    pub(super) forces: Option<DMatrix<f64>>,
 }
 
 impl Expansion {
@@ -52,7 +50,7 @@ impl Expansion {
         let hessian = match y {
             Some(y) => {
                 let of = (layout, rule, jets.as_slice());
-                setting.hessian(of, z, (&net, y.as_slice()), true) + bend
+                setting.hessian(of, z, (&net, y.as_slice())) + bend
             }
             None => DMatrix::identity(layout.size, layout.size),
         };
@@ -62,31 +60,24 @@ impl Expansion {
             values,
             slopes,
             hessian,
-            forces: None,
         })
     }
 
     /// How far from stationary under the equations.
     pub(super) fn residual(&self, y: &DVector<f64>) -> f64 {
-        let pull = match &self.forces {
-            Some(forces) => forces * y,
-            None => self.slopes.tr_mul(y),
-        };
+        let pull = self.slopes.tr_mul(y);
         (&self.gradient + pull).amax().max(self.values.amax())
     }
 
-    /// The step, and the multipliers after it: `H dz + F y = −gradient`, `J dz = −values`, F being the forces; none where that has
-    /// no finite solution.
+    /// The step, and the multipliers after it: `H dz + Jᵀ y = −gradient`, `J dz = −values`; `None` if that has no finite
+    /// solution.
     pub(super) fn step(&self) -> Option<(DVector<f64>, DVector<f64>)> {
         let (size, count) = (self.gradient.len(), self.values.len());
         let mut matrix = DMatrix::zeros(size + count, size + count);
         let mut put = |at, shape, part: &DMatrix<f64>| matrix.view_mut(at, shape).copy_from(part);
         put((0, 0), (size, size), &self.hessian);
         put((size, 0), (count, size), &self.slopes);
-        match &self.forces {
-            Some(forces) => put((0, size), (size, count), forces),
-            None => put((0, size), (size, count), &self.slopes.transpose()),
-        }
+        put((0, size), (size, count), &self.slopes.transpose());
         let mut right = DVector::zeros(size + count);
         right.rows_mut(0, size).copy_from(&-&self.gradient);
         right.rows_mut(size, count).copy_from(&-&self.values);

@@ -1,4 +1,4 @@
-//! A fastest gait as it is told.
+//! Result of a search for the fastest gait.
 
 use swimmer_files::Objective;
 use swimmer_model::{Tolerance, swim, wrapped_angle};
@@ -20,26 +20,28 @@ pub struct Fastest {
     pub distance_over_length: f64,
     /// \[s\]
     pub period: f64,
-    /// Of the displacement against the cycle's mean heading \[rad\].
+    /// Time of the period \[s\] in which the servos rest, after the cycle.
+    pub rest: f64,
+    /// Direction of the displacement relative to the cycle's mean heading \[rad\].
     pub heading: f64,
-    /// The gait, timed as it shall run.
+    /// The gait, with the timing at which it is fastest.
     pub gait: OptimalGait,
-    /// Closed curves that were started from, and how many of them led here.
+    /// Closed curves from which the search started.
     pub starts: usize,
-    /// See [`Self::starts`].
+    /// Starts that led to this gait.
     pub found: usize,
-    /// |d|/(L T) of a cycle with more corners than were asked for, where one is better by more than 1e-6 of it.
+    /// |d|/(L T) of a cycle with more corners than allowed. `None` if no such cycle is faster by more than 1e-6 of the speed.
     pub longer: Option<f64>,
-    /// |d|/(L T) of a faster chain that failed its certificate: none where the answer is the fastest that was met.
+    /// |d|/(L T) of a faster chain that failed its certificate. `None` if no faster chain was found.
     pub uncertified: Option<f64>,
-    /// Its arcs as they were polished, to start a neighbour from.
+    /// Polished arcs, the initial guess for neighbouring problems.
     pub(crate) links: Vec<Link>,
 }
 
-/// A chain as an answer; none where its samples make no gait.
+/// Converts a chain to a result. Returns `None` if its samples are not a valid gait.
 pub(crate) fn told(problem: &SpeedProblem, setting: &Setting, chain: &Polished) -> Option<Fastest> {
     let fast = problem.fast();
-    // Run the way that leads forward, and of two mirror images the one that leads to the left.
+    // Of both senses the one that swims forwards, of two mirror images the one that swims to the left.
     let ahead = wrapped_angle(chain.net.heading());
     let backward = ahead.cos() < -1e-9 || (ahead.cos() < 1e-9 && ahead < 0.0);
     let half_turn = if backward { std::f64::consts::PI } else { 0.0 };
@@ -57,6 +59,7 @@ pub(crate) fn told(problem: &SpeedProblem, setting: &Setting, chain: &Polished) 
         speed_over_length: chain.speed * fast,
         distance_over_length: chain.net.distance(),
         period: chain.layout.period(&chain.z) / fast,
+        rest: 0.0,
         heading,
         starts: 0,
         found: 0,
@@ -65,6 +68,7 @@ pub(crate) fn told(problem: &SpeedProblem, setting: &Setting, chain: &Polished) 
         links: chain.links.clone(),
         gait: OptimalGait {
             certificate,
+            optimal_period: problem.period,
             ..OptimalGait::of_cycle(of, false, cycle, &stroke)
         },
     })

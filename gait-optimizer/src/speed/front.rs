@@ -1,35 +1,35 @@
-//! Displacement against speed: the farthest gait in every period.
+//! Trade-off between displacement and speed: the farthest gait in each period.
 
 use crate::parallel::{Watch, in_parallel};
 
 use super::error::SpeedError;
 use super::fastest::Fastest;
+use super::period::{Branches, rungs, searched};
 use super::problem::SpeedProblem;
 
-/// Periods of a front, over that of the fastest gait: shorter ones carry less far and slower, longer ones farther and slower.
+/// Shortest and longest period of a front, relative to that of the fastest gait.
 const SHORTEST: f64 = 0.3;
 const LONGEST: f64 = 2.0;
-/// Periods that are looked at.
+/// Periods of a front.
 const PERIODS: usize = 24;
-/// Of the time, about, for the fastest gait.
+/// Approximate share of the work that the fastest gait takes.
 const FASTEST_SHARE: f64 = 0.1;
 
-/// The trade between speed and displacement per cycle.
+/// Trade-off between speed and displacement per cycle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Front {
-    /// The fastest gait of all.
+    /// Fastest gait of any period.
     pub fastest: Fastest,
-    /// The farthest gait in each of [`Self::periods`] \[s\]; none where none was certified, or one that an earlier, shorter cycle
-    /// outdoes: that one and a rest carry farther.
+    /// Farthest gait in each of [`Self::periods`], laps and rests included. `None` if no gait of at most this period was certified.
     pub farthest: Vec<Option<Fastest>>,
-    /// \[s\], rising.
+    /// Periods \[s\], ascending.
     pub periods: Vec<f64>,
 }
 
-/// The fastest gait, and the farthest ones in shorter and longer periods.
+/// Finds the fastest gait, and the farthest gaits in shorter and longer periods. The `period` of the problem is ignored.
 ///
 /// # Errors
-/// [`SpeedError`] where there is no fastest gait; `period` of the problem is not looked at.
+/// [`SpeedError`] if no fastest gait is found.
 pub fn front(problem: &SpeedProblem, watch: Watch<'_>) -> Result<Front, SpeedError> {
     let free = SpeedProblem {
         period: None,
@@ -40,28 +40,28 @@ pub fn front(problem: &SpeedProblem, watch: Watch<'_>) -> Result<Front, SpeedErr
         .map(|k| SHORTEST + (LONGEST - SHORTEST) * k as f64 / (PERIODS - 1) as f64)
         .map(|share| share * fastest.period)
         .collect();
-    let mut farthest = in_parallel(
+    let mut searches: Vec<SpeedProblem> = periods
+        .iter()
+        .map(|period| SpeedProblem {
+            period: Some(*period),
+            ..*problem
+        })
+        .collect();
+    searches.extend(rungs(problem, &fastest));
+    let share = |share: f64| watch(FASTEST_SHARE + (1.0 - FASTEST_SHARE) * share);
+    let found = searched(&searches, problem.threads, &share);
+    let branches = Branches {
+        problem,
+        fastest: Some(&fastest),
+        known: found.into_iter().filter_map(Result::ok).collect(),
+    };
+    let farthest = in_parallel(
         periods.len(),
         problem.threads,
-        &|share| watch(FASTEST_SHARE + (1.0 - FASTEST_SHARE) * share),
+        &|_| (),
         || (),
-        |(), index| {
-            let one = SpeedProblem {
-                period: Some(periods[index]),
-                threads: 1,
-                ..*problem
-            };
-            one.watched(&|_| ()).ok()
-        },
+        |(), index| branches.farthest(periods[index]),
     );
-    let mut reached = 0.0;
-    for found in &mut farthest {
-        let here = found.as_ref().map(|found| found.distance_over_length);
-        match here {
-            Some(here) if here >= reached => reached = here,
-            _ => *found = None,
-        }
-    }
     Ok(Front {
         fastest,
         farthest,

@@ -19,17 +19,12 @@ use crate::numerics::damped;
 pub(crate) struct Polygon {
     pub(crate) layout: Layout,
     pub(crate) z: DVector<f64>,
-    /// Per side: multipliers of φ̇₁ ≤ ω₁, φ̇₁ ≥ −ω₁, then of φ̇₂, then of what else limits it.
-    pub(crate) pushes: Vec<Vec<f64>>,
+    /// Per side: multipliers of φ̇₁ ≤ ω₁, φ̇₁ ≥ −ω₁, then of φ̇₂.
+    pub(crate) pushes: Vec<[f64; 4]>,
     pub(crate) speed: f64,
 }
 
 impl Polygon {
-    /// The shape at a share of the period, modulo 1.
-    pub(crate) fn at(&self, share: f64) -> Vector2<f64> {
-        self.layout.at(&self.z, share)
-    }
-
     pub(crate) fn period(&self) -> f64 {
         self.layout.period(&self.z)
     }
@@ -40,8 +35,6 @@ const FIRST_BARRIER: f64 = 1e-2;
 const ROUGH_BARRIER: f64 = 1e-4;
 const LAST_BARRIER: f64 = 1e-8;
 const MOST_STEPS: usize = 150;
-/// Times the mean of all sides that one of a finished polygon may take where more than rates limit it.
-const LONGEST: f64 = 1.5;
 /// No farther than this share of the way to any limit.
 const SHARE: f64 = 0.995;
 /// Quadrature points on a side.
@@ -50,45 +43,30 @@ const POINTS: usize = 6;
 /// About the best polygon near a start whose corners lie strictly within the bounds; none where the method stalls or the gait
 /// does not swim.
 pub(crate) fn rough_polygon(setting: &Setting, start: &[Vector2<f64>]) -> Option<Polygon> {
-    let time = |_, [from, to]: [Vector2<f64>; 2]| 1.3 * setting.least_time(&from, &to) + 1e-3;
+    let time = |_, [from, to]: [Vector2<f64>; 2]| 1.3 * setting.time(&(to - from)) + 1e-3;
     let (layout, z) = Layout::of_corners(start, Shape::Straight, time);
-    Method::new(setting, layout, f64::INFINITY).solve(z, [FIRST_BARRIER, ROUGH_BARRIER])
+    Method::new(setting, layout).solve(z, [FIRST_BARRIER, ROUGH_BARRIER])
 }
 
 /// The best polygon of so many times as many sides near a rough one.
 pub(crate) fn best_polygon(setting: &Setting, rough: &Polygon, times: usize) -> Option<Polygon> {
     let n = times * rough.layout.arcs();
-    // Limits that are all flat have corners, which stay where they are. Else most of a cycle is smooth: its sides take about as long
-    // as each other.
-    let even = !setting.beyond.is_empty();
-    let time = rough.period() / n as f64;
     let part = 1.0 / times as f64;
     let corner = |k: usize| {
-        if even {
-            return rough.at(k as f64 / n as f64);
-        }
         let [from, to] = rough.layout.ends(&rough.z, k / times);
         from + (to - from) * ((k % times) as f64 * part)
     };
     let corners: Vec<Vector2<f64>> = (0..n).map(corner).collect();
-    let (layout, z) = Layout::of_corners(&corners, Shape::Straight, |side, [from, to]| {
-        if even {
-            // What is limited by the shape may be tighter where the new sides are.
-            time.max(1.01 * setting.least_time(&from, &to))
-        } else {
-            part * rough.z[rough.layout.time_index(side / times)]
-        }
+    let (layout, z) = Layout::of_corners(&corners, Shape::Straight, |side, _| {
+        part * rough.z[rough.layout.time_index(side / times)]
     });
-    let longest = if even { LONGEST * time } else { f64::INFINITY };
-    Method::new(setting, layout, longest).solve(z, [ROUGH_BARRIER, LAST_BARRIER])
+    Method::new(setting, layout).solve(z, [ROUGH_BARRIER, LAST_BARRIER])
 }
 
 struct Method<'a> {
     setting: &'a Setting<'a>,
     rule: Rule,
     layout: Layout,
-    /// No side takes more time.
-    longest: f64,
 }
 
 /// Where the iteration stands.
@@ -128,17 +106,16 @@ struct Direction {
 }
 
 impl<'a> Method<'a> {
-    fn new(setting: &'a Setting<'a>, layout: Layout, longest: f64) -> Self {
+    fn new(setting: &'a Setting<'a>, layout: Layout) -> Self {
         Self {
             setting,
             rule: Rule::new(POINTS),
             layout,
-            longest,
         }
     }
 
     fn inequalities(&self, z: &DVector<f64>) -> Vec<Inequality> {
-        limits::inequalities(self.setting, (&self.layout, self.longest), z)
+        limits::inequalities(self.setting, &self.layout, z)
     }
 
     /// How far the first corner is from where gaits join.
@@ -180,8 +157,7 @@ impl<'a> Method<'a> {
             damping: 0.0,
             penalty: 1.0,
         };
-        let most = MOST_STEPS * if self.setting.beyond.is_empty() { 1 } else { 2 };
-        for _ in 0..most {
+        for _ in 0..MOST_STEPS {
             let look = self.look(&here)?;
             if look.error(&here) < 10.0 * here.barrier {
                 if here.barrier <= last {
@@ -244,7 +220,7 @@ impl<'a> Method<'a> {
     fn system(&self, here: &Iterate, look: &Look) -> (DMatrix<f64>, DVector<f64>) {
         let of = (&self.layout, &self.rule, look.jets.as_slice());
         let with = (&look.net, here.y.as_slice());
-        let mut matrix = self.setting.hessian(of, &here.z, with, false);
+        let mut matrix = self.setting.hessian(of, &here.z, with);
         let mut right = -&look.gradient;
         for (one, push) in look.inequalities.iter().zip(&here.pushes) {
             let stiffness = push / one.value;
@@ -255,8 +231,8 @@ impl<'a> Method<'a> {
                 }
             }
             if let Some(curved) = &one.curved {
-                for (i, &(row, _)) in one.slope().iter().take(4).enumerate() {
-                    for (j, &(column, _)) in one.slope().iter().take(4).enumerate() {
+                for (i, &(row, _)) in one.slope().iter().enumerate() {
+                    for (j, &(column, _)) in one.slope().iter().enumerate() {
                         matrix[(row, column)] -= push * curved[(i, j)];
                     }
                 }
@@ -343,13 +319,10 @@ impl<'a> Method<'a> {
     }
 
     fn finish(&self, here: &Iterate, net: chain::Net) -> Polygon {
-        let count = 4 + self.setting.beyond.len();
-        let more = usize::from(self.longest.is_finite());
-        let of_sides = here.pushes.chunks(count + more).take(self.layout.arcs());
-        let of_sides = of_sides.map(|own| own[..count].to_vec());
+        let (of_sides, _) = here.pushes.as_chunks::<4>();
         Polygon {
             layout: self.layout.clone(),
-            pushes: of_sides.collect(),
+            pushes: of_sides[..self.layout.arcs()].to_vec(),
             speed: self.setting.measure(&net) / self.layout.period(&here.z),
             z: here.z.clone(),
         }
@@ -384,7 +357,7 @@ fn newton_step(
     let count = slopes.len();
     let schur = DMatrix::from_fn(count, count, |i, j| slopes[i].dot(&ways[j]));
     let rest = DVector::from_fn(count, |i, _| slopes[i].dot(&step) + values[i]);
-    // Nothing has no factors.
+    // An empty matrix cannot be factored.
     let dy = if count == 0 {
         rest
     } else {

@@ -1,4 +1,4 @@
-//! What is asked for.
+//! Inputs of the fastest-gait search.
 
 use swimmer_files::Bounds;
 use swimmer_model::{Model, Swimmer};
@@ -7,40 +7,40 @@ use super::error::SpeedError;
 use super::setting::{Asked, HeadingRule, Setting};
 use crate::region::Region;
 
-/// The fastest gait of which swimmer, within what.
+/// Inputs of the fastest-gait search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpeedProblem {
-    /// Whose gait.
+    /// The swimmer.
     pub swimmer: Swimmer<f64>,
-    /// Bounds on shapes; those of quarters (`min_angle`, `sector`) make no sense here.
+    /// Bounds on shapes. Bounds of quarter gaits (`min_angle`, `sector`) are refused.
     pub bounds: Bounds,
     /// Largest |φ̇ᵢ| \[rad/s\].
     pub rates: [f64; 2],
-    /// Which way the gait shall lead.
+    /// Required direction of the displacement.
     pub heading: HeadingRule,
-    /// The period \[s\], where the farthest gait in this time is asked for.
+    /// Period \[s\] for the farthest gait in this time; `None` for the fastest gait of any period.
     pub period: Option<f64>,
     /// Most corners of a cycle: a chain of unlike cycles may always beat each of them.
     pub max_corners: usize,
-    /// Closed curves to start from.
+    /// Number of closed curves from which the search starts.
     pub starts: usize,
-    /// Of the random ones.
+    /// Seed of the random starts.
     pub seed: u64,
-    /// Threads to search with; the answer does not depend on it.
+    /// Threads of the search; the result does not depend on it.
     pub threads: usize,
 }
 
 impl SpeedProblem {
-    /// Most corners of a cycle unless told otherwise.
+    /// Default of [`Self::max_corners`].
     pub const MAX_CORNERS: usize = 16;
-    /// Starts unless told otherwise.
+    /// Default of [`Self::starts`] for any heading.
     pub const STARTS: usize = 64;
-    /// And where the heading is prescribed: fewer of them lead to the fastest gait then.
+    /// Default of [`Self::starts`] for a prescribed heading, where fewer starts lead to the fastest gait.
     pub const STARTS_OF_A_HEADING: usize = 256;
-    /// The first starts, each a good guess where angles are bounded: for an answer at once, as a rule the fastest.
+    /// Number of first starts that are good initial guesses for bounded angles: quick, and mostly sufficient.
     pub const GUESSES: usize = 3;
 
-    /// Without bounds, any way.
+    /// A problem without bounds, for any heading.
     pub fn new(swimmer: Swimmer<f64>, rates: [f64; 2]) -> Self {
         Self {
             swimmer,
@@ -55,7 +55,7 @@ impl SpeedProblem {
         }
     }
 
-    /// Led this way, from as many starts as that takes.
+    /// Returns the problem for a heading, with the default number of starts for it.
     #[must_use]
     pub fn led(self, heading: HeadingRule) -> Self {
         let starts = match heading {
@@ -69,19 +69,18 @@ impl SpeedProblem {
         }
     }
 
-    /// The faster servo's rate \[rad/s\].
+    /// Rate of the faster servo \[rad/s\].
     pub(crate) fn fast(&self) -> f64 {
         self.rates[0].max(self.rates[1])
     }
 
-    /// The problem in units in which the faster servo turns by 1 rad.
+    /// Returns the problem in units in which the faster servo turns by 1 rad per unit of time.
     pub(crate) fn setting<'a>(&self, model: &'a Model<f64>, region: &'a Region) -> Setting<'a> {
         let fast = self.fast();
         Setting {
             model,
             region,
             rates: self.rates.map(|rate| rate / fast),
-            beyond: Vec::new(),
             asked: Asked {
                 heading: self.heading,
                 period: self.period.map(|period| period * fast),

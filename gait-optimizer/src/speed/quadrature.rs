@@ -1,9 +1,6 @@
 //! A Gauss–Legendre rule on \[0, 1\] that also integrates up to each of its nodes.
 
-use nalgebra::Vector2;
-
-use crate::height_map::legendre::gauss;
-pub(crate) use crate::height_map::legendre::legendre;
+use crate::height_map::legendre::{gauss, legendre};
 
 /// Nodes, weights, and the weights of the integrals from 0 to each node.
 #[derive(Debug, Clone)]
@@ -44,38 +41,6 @@ impl Rule {
             weights: w.iter().map(|w| 0.5 * w).collect(),
         }
     }
-}
-
-/// Cuts a stretch of a curve, from one share of the period to another, into parts: each takes about as much of the period and of
-/// the turning of the direction, `way`, together, and no more than 1 of both; `rates` are what a period and a radian count. There are
-/// `least` parts or more.
-pub(crate) fn cut(
-    (from, to): (f64, f64),
-    way: impl Fn(f64) -> Vector2<f64>,
-    (rates, least): ([f64; 2], usize),
-) -> Vec<(f64, f64)> {
-    const LOOKS: usize = 200;
-    let at = |k: usize| from + (to - from) * (k as f64 + 0.5) / LOOKS as f64;
-    let ways: Vec<Vector2<f64>> = (0..LOOKS).map(|k| way(at(k))).collect();
-    let even = rates[0] * (to - from) / LOOKS as f64;
-    let mut sums = vec![0.0, even];
-    for pair in ways.windows(2) {
-        sums.push(sums[sums.len() - 1] + even + rates[1] * pair[0].angle(&pair[1]));
-    }
-    let whole = sums[LOOKS];
-    let count = (least..LOOKS).find(|&n| n as f64 >= whole).unwrap_or(LOOKS);
-    let border = |part: usize| {
-        if part == 0 || part == count {
-            return if part == 0 { from } else { to };
-        }
-        let aim = whole * part as f64 / count as f64;
-        let k = sums.partition_point(|sum| *sum <= aim).clamp(1, LOOKS);
-        let share = (aim - sums[k - 1]) / (sums[k] - sums[k - 1]);
-        from + (to - from) * ((k - 1) as f64 + share) / LOOKS as f64
-    };
-    (0..count)
-        .map(|part| (border(part), border(part + 1)))
-        .collect()
 }
 
 #[cfg(test)]

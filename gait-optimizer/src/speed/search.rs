@@ -1,4 +1,4 @@
-//! From rough polygons to the fastest chain that is certified.
+//! Search for the fastest gait: from rough polygons to the fastest certified chain.
 
 use std::cell::OnceCell;
 use std::collections::BTreeSet;
@@ -11,6 +11,7 @@ use super::error::SpeedError;
 use super::fastest::{Fastest, told};
 use super::interior::Polygon;
 use super::pairs::pairs;
+use super::period;
 use super::polish::Polished;
 use super::problem::{SpeedProblem, validate};
 use super::selection::{Group, rough_groups};
@@ -20,43 +21,51 @@ use crate::immobile::refuse_immobile;
 use crate::parallel::{Watch, in_parallel};
 use crate::region::Region;
 
-/// Of the time, about, until all rough polygons are there.
+/// Approximate share of the work that the rough polygons take.
 pub(super) const ROUGH_SHARE: f64 = 0.6;
-/// Groups that are finished at a time.
+/// Groups that are finished at the same time.
 const BATCH: usize = 8;
-/// Sides of a finished polygon for each of a rough one where the chain that fewer lead to is not certified.
+/// Sides of a finished polygon per side of a rough one, if the chain from fewer sides is not certified.
 const MORE_SIDES: [usize; 2] = [3, 4];
-/// Rough polygons that are slower than this share of the best finished gait are left.
+/// Rough polygons slower than this share of the best finished gait are skipped.
 const HOPELESS: f64 = 0.93;
 
 /// Finds the fastest gait.
 ///
 /// # Errors
-/// [`SpeedError`] where the problem makes no sense or no chain can be certified.
+/// [`SpeedError`] if the problem is invalid or no chain can be certified.
 pub fn fastest(problem: &SpeedProblem) -> Result<Fastest, SpeedError> {
     problem.watched(&|_| ())
 }
 
 impl SpeedProblem {
-    /// As [`fastest`], while somebody watches.
+    /// As [`fastest`], with the share of the work done passed to `watch`.
     ///
     /// # Errors
     /// As [`fastest`].
     pub fn watched(&self, watch: Watch<'_>) -> Result<Fastest, SpeedError> {
+        match self.period {
+            Some(period) => period::farthest(self, period, watch),
+            None => self.searched_once(watch),
+        }
+    }
+
+    /// Runs one search. With a prescribed period it considers only cycles that take all of it.
+    pub(super) fn searched_once(&self, watch: Watch<'_>) -> Result<Fastest, SpeedError> {
         self.searched(watch, |search, watch| search.run(watch))?
     }
 
-    /// Every locally fastest gait that the starts lead to, while somebody watches.
+    /// Finds every locally fastest gait to which the starts lead, with the share of the work done passed to `watch`.
     ///
     /// # Errors
-    /// [`SpeedError`] where the problem makes no sense.
+    /// [`SpeedError`] if the problem is invalid.
     pub fn atlas(&self, watch: Watch<'_>) -> Result<SpeedAtlas, SpeedError> {
         self.searched(watch, |search, watch| search.all(watch))
     }
 
-    /// The fastest gait that has the arcs of a neighbouring problem's (another swimmer, other bounds or rates, a little changed),
-    /// with its own certificate. It costs a small part of a search, and tells nothing of other arcs. None where there is no such
-    /// gait, or where it fails its certificate.
+    /// Finds the fastest gait with the arcs of a neighbouring problem's gait (slightly different swimmer, bounds or rates), with its own
+    /// certificate. It costs a small part of a search and does not consider other arcs. Returns `None` if there is no such gait, or if
+    /// it fails its certificate.
     pub fn near(&self, neighbour: &Fastest) -> Option<Fastest> {
         validate(self).ok()?;
         let model = Model::new(&self.swimmer.of_unit_length()).ok()?;
@@ -95,40 +104,40 @@ impl SpeedProblem {
     }
 }
 
-/// All locally fastest gaits that were found, and what became of the rest.
+/// All locally fastest gaits of a search, and counts of the rest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpeedAtlas {
-    /// Certified, fastest first.
+    /// Certified gaits, fastest first.
     pub optima: Vec<Fastest>,
-    /// Certified cycles of more corners than were asked for.
+    /// Certified cycles with more corners than allowed.
     pub longer: usize,
-    /// Chains of arcs that failed their certificate, and the speed of the fastest of them, |d|/(L T) \[1/s\].
+    /// Chains of arcs that failed their certificate.
     pub uncertified: usize,
-    /// See [`Self::uncertified`].
+    /// Speed |d|/(L T) \[1/s\] of the fastest uncertified chain.
     pub best_uncertified: Option<f64>,
 }
 
-/// What has been found so far.
+/// State of a search.
 pub(super) struct Search<'a> {
     problem: &'a SpeedProblem,
     setting: &'a Setting<'a>,
-    /// Closed curves that were started from.
+    /// Closed curves from which the search started.
     starts: usize,
     groups: &'a [Group],
-    /// Fastest first.
+    /// Finished chains, fastest first.
     chains: Vec<Finished>,
 }
 
-/// A chain that a group led to.
+/// Finished chain of a group.
 struct Finished {
     chain: Polished,
     group: usize,
-    /// Its gait, where one is certified, once that has been asked for.
+    /// Its gait if certified, computed on first use.
     certified: OnceCell<Option<Fastest>>,
 }
 
 impl Search<'_> {
-    /// Finishes group after group until no other can be as fast, or none is left.
+    /// Finishes groups until no remaining group can be as fast.
     pub(super) fn run(mut self, watch: Watch<'_>) -> Result<Fastest, SpeedError> {
         let mut done = 0;
         loop {
@@ -136,14 +145,14 @@ impl Search<'_> {
             let left = self.groups.get(done);
             let hopeless = |speed: f64| left.is_none_or(|group| group.speed() < HOPELESS * speed);
             if hopeless(best) {
-                // A faster chain may be longer than was asked for, or fail its certificate.
+                // A faster chain may have too many corners, or fail its certificate.
                 let answer = self.answer();
                 let speed = answer.as_ref().map_or(0.0, |found| found.speed_over_length);
                 if left.is_none() || hopeless(speed / self.problem.fast()) {
                     return answer;
                 }
             }
-            // Beside the fastest that are left, only those that may turn out as fast.
+            // With the fastest remaining group, only those that may become as fast.
             let left = self.groups[done..].iter().take(BATCH);
             let fastest = self.groups[done].speed();
             let worth = left.take_while(|group| group.speed() >= HOPELESS * fastest);
@@ -154,7 +163,7 @@ impl Search<'_> {
         }
     }
 
-    /// Finishes every group, and tells all chains that are certified.
+    /// Finishes every group and returns all certified chains.
     pub(super) fn all(mut self, watch: Watch<'_>) -> SpeedAtlas {
         let count = self.groups.len();
         for done in (0..count).step_by(BATCH) {
@@ -173,7 +182,7 @@ impl Search<'_> {
                 None => uncertified.push(one.chain.speed * self.problem.fast()),
             }
         }
-        // What chains are certified as may be slower than they are, and alike.
+        // A certified gait may be slower than its chain, and equal to another.
         let speed = |found: &Fastest| found.speed_over_length;
         optima.sort_by(|a, b| speed(b).total_cmp(&speed(a)));
         optima.dedup_by(|a, b| (speed(a) - speed(b)).abs() <= 1e-9 * speed(b));
@@ -185,21 +194,21 @@ impl Search<'_> {
         }
     }
 
-    /// A chain as an answer, where what it leads to is certified.
+    /// Returns the certified gait of a chain, with the counts of starts.
     fn certified(&self, one: &Finished) -> Option<Fastest> {
         let mut answer = one
             .certified
             .get_or_init(|| self.looked_into(one))
             .clone()?;
         answer.starts = self.starts;
-        // Two of one group stand for the same starts.
+        // Two chains of one group come from the same starts.
         let here = self.chains.iter().filter(|other| alike(other, one));
         let here: BTreeSet<usize> = here.map(|other| other.group).collect();
         answer.found = here.into_iter().map(|group| self.groups[group].count).sum();
         Some(answer)
     }
 
-    /// The certified gait of a chain, or, unless it is longer than was asked for, of one that more sides of its polygon show.
+    /// Returns the certified gait of a chain, or of one from more sides of its polygon unless it has too many corners.
     fn looked_into(&self, one: &Finished) -> Option<Fastest> {
         let setting = self.setting;
         let passes = |chain: &Polished| passed(self.problem, setting, chain);
@@ -215,12 +224,12 @@ impl Search<'_> {
             .or_else(|| MORE_SIDES.into_iter().find_map(from_more_sides))
     }
 
-    /// Whether a chain has more corners than are asked for.
+    /// Returns `true` if a chain has more corners than allowed.
     fn is_long(&self, one: &Finished) -> bool {
         one.chain.links.len() > self.problem.max_corners
     }
 
-    /// Finishes what was chosen of some groups.
+    /// Finishes the chosen polygons of several groups.
     fn finish(&mut self, groups: Range<usize>) {
         let jobs: Vec<(&Polygon, usize)> = groups
             .flat_map(|at| {
@@ -249,21 +258,21 @@ impl Search<'_> {
             .sort_by(|a, b| b.chain.speed.total_cmp(&a.chain.speed));
     }
 
-    /// The fastest chain that is certified.
+    /// Returns the fastest certified gait.
     fn answer(&self) -> Result<Fastest, SpeedError> {
         let problem = self.problem;
         let (mut longer, mut uncertified) = (None, None);
         let mut answer: Option<Fastest> = None;
         for one in shortest_of_alike(&self.chains) {
             let speed = one.chain.speed * problem.fast();
-            // What a chain is certified as may be slower than the chain.
+            // A certified gait may be slower than its chain.
             if answer
                 .as_ref()
                 .is_some_and(|answer| answer.speed_over_length >= speed)
             {
                 break;
             }
-            // Of long ones the fastest is told.
+            // Of the chains with too many corners only the fastest is reported.
             if self.is_long(one) && longer.is_some() {
                 continue;
             }
@@ -300,18 +309,18 @@ impl Search<'_> {
     }
 }
 
-/// A chain as an answer, where its certificate passes.
+/// Converts a chain to a result. Returns `None` if its certificate fails.
 fn passed(problem: &SpeedProblem, setting: &Setting, chain: &Polished) -> Option<Fastest> {
     told(problem, setting, chain).filter(|found| found.gait.certificate.pass())
 }
 
-/// Whether two chains are as fast as each other.
+/// Returns `true` if two chains are equally fast.
 fn alike(a: &Finished, b: &Finished) -> bool {
     (a.chain.speed - b.chain.speed).abs() <= 1e-9 * b.chain.speed
 }
 
-/// One chain of each speed, fastest first: the one of the shortest period, as a gait run several times over is as fast as the
-/// gait.
+/// Returns one chain of each speed, fastest first: the one with the shortest period, since several laps of a gait are as fast as
+/// the gait.
 fn shortest_of_alike(chains: &[Finished]) -> Vec<&Finished> {
     let period = |one: &Finished| one.chain.layout.period(&one.chain.z);
     let mut best: Vec<&Finished> = Vec::new();

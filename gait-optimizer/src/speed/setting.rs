@@ -5,7 +5,6 @@ use swimmer_model::Model;
 
 use super::arc::Jet;
 use super::chain::{self, Layout, Net, Weights};
-use super::gauge::Facet;
 use super::quadrature::Rule;
 use crate::member::Member;
 use crate::region::Region;
@@ -19,9 +18,6 @@ pub(crate) enum Goal {
     /// Net rotation, wherever the gait leads.
     Rotation,
 }
-
-/// Where along a straight way limits are looked at: the nodes of a Gauss rule.
-pub(super) const ALONG: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 
 /// Which way the gait shall lead, against its mean heading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -68,8 +64,6 @@ pub(crate) struct Setting<'a> {
     pub(crate) region: &'a Region,
     /// Largest |φ̇ᵢ|.
     pub(crate) rates: [f64; 2],
-    /// What else limits the servos.
-    pub(crate) beyond: Vec<Facet>,
     pub(crate) asked: Asked,
     /// Whose displacements, with these weights, are to be the most; where there are none, the model's own. What holds of the
     /// whole chain holds of the model alone.
@@ -80,23 +74,6 @@ impl Setting<'_> {
     /// The least time in which the servos turn by this.
     pub(crate) fn time(&self, way: &Vector2<f64>) -> f64 {
         (way.x.abs() / self.rates[0]).max(way.y.abs() / self.rates[1])
-    }
-
-    /// The least time of a straight way from one shape to another, were the same limit the tightest all along.
-    pub(crate) fn least_time(&self, from: &Vector2<f64>, to: &Vector2<f64>) -> f64 {
-        let way = to - from;
-        let powers = ALONG.map(|s| self.model.power_matrix(&(from + way * s)));
-        let mean = |limit: &Facet| {
-            let along = powers.iter().map(|power| limit.value(power, &way));
-            along.sum::<f64>() / ALONG.len() as f64
-        };
-        self.beyond.iter().map(mean).fold(self.time(&way), f64::max)
-    }
-
-    /// Everything that limits the servos: four rates, then the rest.
-    pub(crate) fn limits(&self) -> Vec<Facet> {
-        let rates = Facet::of_rates(self.rates).into_iter();
-        rates.chain(self.beyond.iter().copied()).collect()
     }
 
     /// What is to be the most per unit of time.
@@ -182,18 +159,16 @@ impl Setting<'_> {
         }
     }
 
-    /// Second derivatives of ln of the period less that of the measure of the model alone, with the multipliers of the equations;
-    /// by central differences or one-sided ones.
+    /// Second derivatives of ln of the period less that of the measure of the model alone, with the multipliers of the equations.
     pub(super) fn hessian(
         &self,
         (layout, rule, jets): (&Layout, &Rule, &[Jet]),
         z: &DVector<f64>,
         (net, multipliers): (&Net, &[f64]),
-        central: bool,
     ) -> DMatrix<f64> {
         let weights = self.weights(net, Some(multipliers));
         let of = (layout, self.model, rule);
-        let mut hessian = chain::hessian(of, jets, z, weights, central);
+        let mut hessian = chain::hessian(of, jets, z, weights);
         if self.asked.goal == Goal::Rotation {
             // The weight changes with the measure.
             let (_, slope) = chain::gradient(layout, jets, z, self.weights(net, None));

@@ -162,6 +162,7 @@ fn header_line(file: &mut GaitFile, line: Line<'_>) -> Result<Option<f64>, FileE
         "objective" => file.objective = line.word(value)?,
         "swimmer" => file.swimmer_name = Some(value.trim().to_owned()),
         "swimmer_hash" => file.swimmer_hash = Some(line.word(value)?),
+        "optimal_period" => file.optimal_period = optimal_period(line, value)?,
         "bounds" => file.bounds = bounds(line, value)?,
         "arc" => file.arcs.push(arc(line, value)?),
         "corner" => {
@@ -177,12 +178,24 @@ fn header_line(file: &mut GaitFile, line: Line<'_>) -> Result<Option<f64>, FileE
         }
         unknown => {
             let problem = format!(
-                "unknown key `{unknown}`: the keys are objective, swimmer, swimmer_hash, bounds, arc and corner"
+                "unknown key `{unknown}`: the keys are objective, swimmer, swimmer_hash, optimal_period, bounds, arc and corner"
             );
             return Err(line.error(key.trim(), problem));
         }
     }
     Ok(None)
+}
+
+fn optimal_period(line: Line<'_>, value: &str) -> Result<Option<f64>, FileError> {
+    if value.trim() == "none" {
+        return Ok(None);
+    }
+    let period = line.number(value)?;
+    if period > 0.0 {
+        Ok(Some(period))
+    } else {
+        Err(line.error(value.trim(), "a period is above 0 s, or `none`"))
+    }
 }
 
 fn bounds(line: Line<'_>, value: &str) -> Result<Bounds, FileError> {

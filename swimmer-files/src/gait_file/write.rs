@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::GaitFile;
+use super::{GaitFile, Objective};
 
 /// Documentation that heads every file; the reader skips lines that start with `##`.
 const ABOUT: &str = "\
@@ -11,6 +11,7 @@ const ABOUT: &str = "\
 ##                  joined-turning (fastest of the gaits that begin and end at the first sample's shape) | unspecified
 ##   swimmer        name of the swimmer that the gait was made for
 ##   swimmer_hash   SHA-256 of its links, drag and sphere
+##   optimal_period of a fastest gait: the period in s for which it goes farthest, or `none`: fastest of any period
 ##   bounds         max_angle and min_angle in rad or `none`; sector and no_overlap `true` or `false`;
 ##                  clearance_m the least distance of the side links in metres
 ##   arc            kind (singular, upper, lower, diagonal, clearance, regular, extreme), then from and to in u; in order
@@ -36,6 +37,11 @@ fn write_all(text: &mut String, file: &GaitFile) -> std::fmt::Result {
     }
     if let Some(hash) = &file.swimmer_hash {
         writeln!(text, "# swimmer_hash: {hash}")?;
+    }
+    if let Some(period) = file.optimal_period {
+        writeln!(text, "# optimal_period: {period:?}")?;
+    } else if file.objective == Objective::Speed {
+        writeln!(text, "# optimal_period: none")?;
     }
     let bounds = &file.bounds;
     writeln!(

@@ -5,7 +5,6 @@ pub(crate) mod answer;
 mod displacement;
 mod efficiency;
 mod front;
-mod limited;
 mod pace;
 mod robust;
 mod sideways;

@@ -7,11 +7,10 @@ use swimmer_files::{ServoFile, SwimmerFile};
 
 use super::answer::tell_arcs;
 use super::front::FrontFile;
-use super::limited::{Limits, within};
 use super::pace::{SEARCHING, at_pace, tell_as_played};
 use super::robust::{Robustly, as_written, refused, tell_robustness};
 use super::{Found, Objective, Task};
-use crate::arguments::{rate, seconds, watts};
+use crate::arguments::{rate, seconds};
 use crate::bounds::WholeBounds;
 use crate::document::Document;
 use crate::failure::{Failure, Outcome};
@@ -26,10 +25,6 @@ use crate::threads;
 /// With --robust or --gain: with the worst swimmer that is left open, or in the mean, beside what the fastest gait of the estimates
 /// would bring there: along gaits that turn none of the swimmers, as the fastest as a rule are where both side links are alike.
 ///
-/// With --power instead: with servos that together give no more than so many watts, which is the most efficient gait at constant
-/// power; with --torque: with servos each of which gives no more than the swimmer file says, less the faster it turns. Such limits
-/// hold together, and with --max-rate; the answer says which of them binds on what share of the cycle.
-///
 /// Fastest means the best of all cycles of at most 16 corners: a chain of unlike cycles may always beat each of them, and a
 /// longer cycle that was met and is better by more than 1e-6 is told. With a prescribed heading there often is one, as a cycle may
 /// tack: lead to either side of the heading in turn, the faster the less often it turns, up to the speed of the fastest gait of any
@@ -37,18 +32,12 @@ use crate::threads;
 #[derive(Debug, clap::Args)]
 pub(crate) struct Speed {
     /// No servo turns faster than this angle a second; a second one is that of joint 2
-    #[arg(long, value_name = "ANGLE_PER_S", value_parser = rate, num_args = 1..=2, required_unless_present_any = ["playable", "power", "torque"])]
+    #[arg(long, value_name = "ANGLE_PER_S", value_parser = rate, num_args = 1..=2, required_unless_present = "playable")]
     max_rate: Vec<f64>,
-    /// The servos together give no more than this many watts; the swimmer file names its fluid
-    #[arg(long, value_name = "WATTS", value_parser = watts, conflicts_with_all = ["heading", "period", "front", "robust", "gain"])]
-    power: Option<f64>,
-    /// Each servo gives no more torque than the swimmer file says, which falls evenly to 0 at its rate without a load
-    #[arg(long, conflicts_with_all = ["heading", "period", "front"])]
-    torque: bool,
     /// Which way the gait shall lead, against the mean heading of its cycle
     #[arg(long, value_name = "HEADING", value_enum, default_value = "any")]
     heading: Heading,
-    /// The farthest gait in this many seconds, instead of the fastest
+    /// The farthest gait in this many seconds, instead of the fastest: a cycle, several laps of one, or one and a rest
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     period: Option<f64>,
     #[command(flatten)]
@@ -82,14 +71,6 @@ impl Objective for Speed {
         let file = &task.file;
         let bounds = self.bounds.of(file);
         let rates = servo_rates(&self.max_rate, self.bounds.playable(), file);
-        if self.power.is_some() || self.torque {
-            let limits = Limits {
-                power: self.power,
-                rates,
-                torque: self.torque,
-            };
-            return within(task, bounds, &limits);
-        }
         let Some(rates) = rates else {
             return Err(Failure::BadInput(
                 "give --max-rate or --playable".to_owned(),
@@ -135,7 +116,7 @@ impl Objective for Speed {
         let servo = file
             .servo
             .or(self.bounds.playable().then(ServoFile::default));
-        tell_as_played(&mut answer, file, servo, (gait, found.period));
+        tell_as_played(&mut answer, file, servo, (gait, found.period - found.rest));
         if let (Some(place), Some(farthest)) = (&self.front, &farthest) {
             place.write(farthest, file, &mut answer)?;
         }
@@ -175,6 +156,15 @@ fn told(kind: &str, file: &SwimmerFile, found: &Fastest) -> Document {
             "found",
             format!("from {} of {} starts", found.found, found.starts),
         );
+    if let Some(moves) = found.gait.optimal_period {
+        answer.key("rest_s", found.rest);
+        if found.rest > 0.0 {
+            answer.row(
+                "rests",
+                format!("{:.6} s after a cycle of {moves:.6} s", found.rest),
+            );
+        }
+    }
     tell_arcs(&mut answer, &found.gait.arcs);
     answer
         // Fractions of the period where a servo turns round or stops, and how many a cycle may have.

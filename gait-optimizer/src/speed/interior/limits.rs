@@ -1,23 +1,23 @@
-//! The limits of a polygon: rates of its sides and what else limits their servos, bounds of its corners.
+//! Inequalities of a polygon: rates of its sides, bounds of its corners.
 
-use nalgebra::{DVector, Matrix4, Vector4};
+use nalgebra::{DVector, Matrix2};
 
 use super::super::chain::Layout;
-use super::super::setting::{ALONG, Setting};
+use super::super::setting::Setting;
 use crate::region::Bound;
 
 /// One inequality, `value ≥ 0`, with the entries of its slope.
 pub(super) struct Inequality {
     pub(super) value: f64,
-    entries: [(usize, f64); 5],
+    entries: [(usize, f64); 3],
     count: usize,
     /// Second derivatives in the coordinates of its first entries, where it is not linear.
-    pub(super) curved: Option<Matrix4<f64>>,
+    pub(super) curved: Option<Matrix2<f64>>,
 }
 
 impl Inequality {
-    fn new(value: f64, slope: &[(usize, f64)], curved: Option<Matrix4<f64>>) -> Self {
-        let mut entries = [(0, 0.0); 5];
+    fn new(value: f64, slope: &[(usize, f64)], curved: Option<Matrix2<f64>>) -> Self {
+        let mut entries = [(0, 0.0); 3];
         entries[..slope.len()].copy_from_slice(slope);
         Self {
             value,
@@ -32,11 +32,10 @@ impl Inequality {
     }
 }
 
-/// All limits of a polygon: of each side four of its rates, then what else limits it, in the order of [`Setting::limits`], and
-/// that it takes no longer than `longest`, if anything does; then those of each corner.
+/// All inequalities of a polygon: four rates of each side, then the bounds of each corner.
 pub(super) fn inequalities(
     setting: &Setting,
-    (layout, longest): (&Layout, f64),
+    layout: &Layout,
     z: &DVector<f64>,
 ) -> Vec<Inequality> {
     let mut all = Vec::with_capacity(10 * layout.arcs());
@@ -51,41 +50,6 @@ pub(super) fn inequalities(
                 all.push(Inequality::new(limit * z[time] - sign * way, &slope, None));
             }
         }
-        if setting.beyond.is_empty() {
-            continue;
-        }
-        let [a, b] = layout.ends(z, side);
-        let places = ALONG.map(|s| (s, setting.model.second_derivatives(&(a + (b - a) * s))));
-        for limit in &setting.beyond {
-            let mut value = z[time];
-            let (mut slope, mut curved) = (Vector4::zeros(), Matrix4::zeros());
-            for (s, place) in &places {
-                let level = limit.level(place, &(b - a));
-                // Shape and way by both ends.
-                let ends = Matrix4::from_fn(|i, j| match (i % 2 == j % 2, i < 2, j < 2) {
-                    (false, ..) => 0.0,
-                    (true, true, true) => 1.0 - s,
-                    (true, true, false) => *s,
-                    (true, false, true) => -1.0,
-                    (true, false, false) => 1.0,
-                });
-                let weight = 1.0 / ALONG.len() as f64;
-                value -= level.value * weight;
-                slope -= ends.transpose() * level.slope * weight;
-                curved -= ends.transpose() * level.curved * ends * weight;
-            }
-            let slope = [
-                (from, slope[0]),
-                (from + 1, slope[1]),
-                (to, slope[2]),
-                (to + 1, slope[3]),
-                (time, 1.0),
-            ];
-            all.push(Inequality::new(value, &slope, Some(curved)));
-        }
-        if longest.is_finite() {
-            all.push(Inequality::new(longest - z[time], &[(time, -1.0)], None));
-        }
     }
     for corner in 0..layout.arcs() {
         let phi = layout.corner(z, corner);
@@ -93,12 +57,7 @@ pub(super) fn inequalities(
         for bound in setting.region.bounds() {
             let gradient = bound.gradient(&phi);
             let curved = match bound {
-                Bound::Clearance(clearance) => {
-                    let mut curved = Matrix4::zeros();
-                    let hessian = clearance.deciding_level(&phi).hessian;
-                    curved.fixed_view_mut::<2, 2>(0, 0).copy_from(&hessian);
-                    Some(curved)
-                }
+                Bound::Clearance(clearance) => Some(clearance.deciding_level(&phi).hessian),
                 Bound::Straight(_) => None,
             };
             let slope = [(at, gradient.x), (at + 1, gradient.y)];
