@@ -508,3 +508,16 @@ fn the_model_alone_tells_the_same_saddles() {
 fn the_model_alone_tells_the_same_saddles_of_all() {
     saddles_of(0..200);
 }
+
+/// Within small bounds the height is constant, .0205761317 for Purcell's swimmer, and the best gait is the whole square.
+#[test]
+fn small_bounds_admit_the_square() {
+    for max_angle in [1e-3, 1e-2, 3e-2] {
+        let problem = DisplacementProblem::new(Swimmer::purcell()).with_max_angle(max_angle);
+        let gait = optimum(&problem);
+        let square = 0.020_576_131_7 * (2.0 * max_angle).powi(2);
+        let off = gait.displacement_over_length / square - 1.0;
+        assert!(off.abs() < max_angle, "{max_angle} {off}");
+        assert!(gait.certificate.pass());
+    }
+}

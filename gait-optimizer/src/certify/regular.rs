@@ -20,8 +20,8 @@ impl Subject<'_> {
     pub(super) fn of_efficiency(&self, open: Openness) -> Vec<Check> {
         let path = &self.path;
         let d = path.displacement();
-        if d.norm().is_nan() || d.norm() <= 1e-6 {
-            return vec![Condition::Gains.check(d.norm())];
+        if d.norm().is_nan() || d.norm() <= self.least_gain() {
+            return vec![Condition::Gains.within(d.norm(), self.least_gain())];
         }
         let length = path.total_power_length();
         let powers = || path.places.iter().map(|place| place.root_power.powi(2));

@@ -45,7 +45,7 @@ impl Subject<'_> {
     fn of_gain(&self, gain: Gain, open: Openness) -> Vec<Check> {
         let Some(momentum) = self.weak_momentum(gain) else {
             // Without a gain the gait is not optimal.
-            return vec![Condition::Gains.check(self.gained(gain))];
+            return vec![Condition::Gains.within(self.gained(gain), self.least_gain())];
         };
         let places = self.path.places.iter();
         let heights = places.map(|place| momentum.evaluate(self.model, &place.phi, &place.pose).0);
@@ -187,10 +187,11 @@ impl Subject<'_> {
         worst
     }
 
-    /// The multipliers: p along the displacement (across the heading at the start for a sideways gait), c from what must vanish on the free arcs. None where nothing is gained.
+    /// Multipliers: p along the displacement (across the heading at the start for a sideways gait), c from what must vanish on the free
+    /// arcs. Returns `None` if the gain is too small.
     pub(super) fn weak_momentum(&self, gain: Gain) -> Option<Momentum> {
         let gained = self.gained(gain);
-        if gained.is_nan() || gained <= 1e-6 {
+        if gained.is_nan() || gained <= self.least_gain() {
             return None;
         }
         let d = self.path.displacement();

@@ -77,6 +77,12 @@ impl<'a> Subject<'a> {
         }
     }
 
+    /// Least gain of a gait that is no mere rounding. Small gaits gain as the square of their angles.
+    pub(super) fn least_gain(&self) -> f64 {
+        let reach = self.shapes.iter().map(Vector2::amax).fold(0.0, f64::max);
+        Condition::Gains.tolerance() * reach.powi(2).min(1.0)
+    }
+
     /// Conditions of closure and bounds. Samples that are too coarse do not prove symmetry.
     pub(super) fn of_the_curve(
         &self,
