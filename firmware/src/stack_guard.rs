@@ -16,11 +16,11 @@ const STACK_END: u32 = 0x2000_0000;
 const LENGTH: u32 = 32 * 1024;
 const START: u32 = STACK_END - LENGTH;
 
-/// MPU_RBAR (ARMv6-M, B3.5.8): address, with the number of the region (0) marked as valid.
+/// `MPU_RBAR` (ARMv6-M, B3.5.8): address, with the number of the region (0) marked as valid.
 const RBAR: u32 = START | 1 << 4;
-/// MPU_RASR (B3.5.9): never executed (XN), access permission 0 (none, privileged or not), a size of 2^(SIZE + 1), enabled.
+/// `MPU_RASR` (B3.5.9): never executed (XN), access permission 0 (none, privileged or not), a size of 2^(SIZE + 1), enabled.
 const RASR: u32 = 1 << 28 | (LENGTH.trailing_zeros() - 1) << 1 | 1;
-/// MPU_CTRL (B3.5.5): on, with the default map for all that is not in a region (PRIVDEFENA).
+/// `MPU_CTRL` (B3.5.5): on, with the default map for all that is not in a region (PRIVDEFENA).
 const CTRL: u32 = 1 << 2 | 1;
 
 const _: () = assert!(LENGTH.is_power_of_two() && LENGTH >= 256 && START.is_multiple_of(LENGTH));
