@@ -6,7 +6,7 @@
 
 use super::error::SpeedError;
 use super::fastest::Fastest;
-use super::problem::SpeedProblem;
+use super::problem::{SpeedProblem, validate};
 use crate::parallel::{Watch, in_parallel};
 
 /// Continuation steps per octave of the period.
@@ -32,6 +32,7 @@ pub(super) fn farthest(
     period: f64,
     watch: Watch<'_>,
 ) -> Result<Fastest, SpeedError> {
+    validate(problem)?;
     let free = SpeedProblem {
         period: None,
         ..*problem
