@@ -150,6 +150,10 @@ impl JsonLines {
     }
 
     fn frame(&self, line: &[u8], now_s: f64) -> Result<Frame, String> {
+        // serde reads an array as the fields of a struct in their order.
+        if !line.trim_ascii_start().starts_with(b"{") {
+            return Err("not a JSON object; write {\"t\": …, \"points\": …}".to_owned());
+        }
         let line: Line = serde_json::from_slice(line).map_err(|error| error.to_string())?;
         if !line.t.is_finite() {
             return Err("`t` is not finite".to_owned());
@@ -310,7 +314,7 @@ mod tests {
         for (text, reason) in [
             ("{", "EOF"),
             ("{}", "missing field `t`"),
-            ("[1]", "t"),
+            ("[1]", "not a JSON object"),
             (r#"{"t": "now"}"#, "invalid type"),
             (
                 r#"{"t": 1, "points": {"Front": [1]}}"#,
