@@ -167,6 +167,7 @@ def calibrate(
     swimmer: Swimmer | Text | None = None,
     front: str | None = None,
     back: str | None = None,
+    body: str | None = None,
     level: float = 0.95,
     fit_also: Sequence[str] = (),
     advise: bool = False,
@@ -178,7 +179,8 @@ def calibrate(
 ) -> Calibration:
     """Cycles of a campaign or of one recording, and for a campaign the fit: `sphere_radius_m`, `chi`, `intervals`, `verdict`, …
 
-    A campaign is a TOML file; a single recording wants `gait`, `period` and `swimmer` here. `output` is a folder for the report.
+    A campaign is a TOML file. A single recording needs `gait`, `period` and `swimmer` here, and either the reflectors `front` and
+    `back` or the rigid `body` that is the middle link. `output` is a folder for the report.
     """
     with Run("calibrate", os.fspath(file)) as run:
         if gait is not None:
@@ -190,6 +192,7 @@ def calibrate(
                 "period": period,
                 "front": front,
                 "back": back,
+                "body": body,
                 "level": level,
                 "fit_also": ",".join(fit_also) or None,
                 "advise": advise,
