@@ -132,7 +132,7 @@ fn an_estop_outlives_a_reset_but_not_the_power() {
     robot.arm(false).unwrap();
     seen(
         "R6, e-stop, then a watchdog reset, then a power cycle",
-        "e-stopped still, armed only with its clear flag; Stopped after the power cycle",
+        "e-stopped still, armed only after a clear with its count; Stopped after the power cycle",
     );
 }
 
