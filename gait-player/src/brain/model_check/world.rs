@@ -14,6 +14,8 @@ pub(super) struct World {
     pub(super) brain: Brain,
     pub(super) flash: MemoryStorage,
     pub(super) now_us: u64,
+    /// Seed of the session numbers of this boot, another for each boot: a robot draws it at random.
+    session_seed: u16,
     pub(super) battery_mv: Option<u16>,
     sequence: u16,
     pub(super) upload: u16,
@@ -68,6 +70,7 @@ impl World {
             brain: Brain::new(BrainConfig::in_tests()),
             flash: MemoryStorage::erased(),
             now_us: 0,
+            session_seed: 100,
             battery_mv: Some(5_000),
             sequence: 0,
             upload: 0,
@@ -166,13 +169,14 @@ impl World {
             Event::Jump(seconds) => self.now_us += seconds * 1_000_000,
             Event::Battery(mv) => self.battery_mv = mv,
             Event::Reset(reset_reason) => {
+                self.session_seed = self.session_seed.wrapping_add(1_000);
                 let boot = Boot {
                     reset_reason,
                     kept: self.brain.output.kept,
                     // A power cut clears the RAM but not the flash.
                     starts: (reset_reason != ResetReason::PowerOn)
                         .then_some(self.brain.output.starts),
-                    session_seed: self.brain.session.number().wrapping_add(7),
+                    session_seed: self.session_seed,
                     ..Boot::power_on(1, 0)
                 };
                 self.brain = Brain::new(BrainConfig {
