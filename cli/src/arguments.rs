@@ -140,7 +140,7 @@ pub(crate) fn load_gait(spec: &GaitSpec) -> Outcome<AnyGait> {
 
 /// Loads the gait that `--gait` names, for this swimmer. Prints a warning if the file names another swimmer.
 pub(crate) fn load_gait_for(swimmer: &SwimmerFile, spec: &GaitSpec) -> Outcome<AnyGait> {
-    printing(|context| GaitSource::from(spec).load_for(swimmer, context))
+    printing(|context| GaitSource::from(spec.clone()).load_for(swimmer, context))
 }
 
 /// Prints a warning if a gait file was made for another swimmer.

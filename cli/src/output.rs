@@ -1,4 +1,4 @@
-//! The one place that writes to standard output: plain lines for people, one JSON document for scripts.
+//! Standard output: plain lines for people, or one JSON document for scripts. No other module writes to it.
 
 use std::cell::RefCell;
 use std::fmt;
@@ -12,48 +12,48 @@ use serde::Serialize;
 use crate::failure::{Failure, Outcome};
 use crate::new_folder::with_places;
 
-/// What the system said when standard output first took no more.
+/// Error of the first write to standard output that failed.
 static LOST: OnceLock<String> = OnceLock::new();
 
-/// Whether a script asks, which wants no progress told.
+/// Set if a script reads the output, so that no progress is shown.
 static FOR_SCRIPTS: AtomicBool = AtomicBool::new(false);
 
-/// From here on a script is asking.
+/// Turns progress off, because a script reads the output.
 pub(crate) fn be_for_scripts() {
     FOR_SCRIPTS.store(true, Ordering::Relaxed);
 }
 
-/// Whether one is.
+/// Returns true if a script reads the output.
 pub(crate) fn for_scripts() -> bool {
     FOR_SCRIPTS.load(Ordering::Relaxed) || handed_over()
 }
 
-/// Whether experts' details are wanted.
+/// Set by `--verbose`.
 static VERBOSE: AtomicBool = AtomicBool::new(false);
 
-/// From here on answers and failures tell their details, too.
+/// Adds details to outputs and failures from here on.
 pub(crate) fn be_verbose() {
     VERBOSE.store(true, Ordering::Relaxed);
 }
 
-/// Whether they do.
+/// Returns true if outputs and failures have details.
 pub(crate) fn verbose() -> bool {
     VERBOSE.load(Ordering::Relaxed)
 }
 
 thread_local! {
-    /// What this thread's command says, where its caller in the same process takes it.
+    /// Output of this thread's command, if its caller in the same process collects it.
     static HANDED_OVER: RefCell<Option<HandedOver>> = const { RefCell::new(None) };
 }
 
-/// What would have gone to standard output and to standard error.
+/// Text for standard output and for standard error.
 #[derive(Debug, Default)]
 pub(crate) struct HandedOver {
     pub(crate) document: String,
     pub(crate) asides: Vec<String>,
 }
 
-/// Runs `command` with all that this thread says kept for the caller.
+/// Runs `command` and collects this thread's output for the caller.
 pub(crate) fn hand_over<T>(command: impl FnOnce() -> T) -> (T, HandedOver) {
     let before = HANDED_OVER.replace(Some(HandedOver::default()));
     let done = command();
@@ -61,35 +61,25 @@ pub(crate) fn hand_over<T>(command: impl FnOnce() -> T) -> (T, HandedOver) {
     (done, said.unwrap_or_default())
 }
 
-/// Whether a caller in the same process takes what this thread says.
+/// Returns true if a caller in the same process collects this thread's output.
 pub(crate) fn handed_over() -> bool {
     HANDED_OVER.with_borrow(Option::is_some)
 }
 
-/// Where and how a command answers.
+/// Form of a command's output.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Output {
     /// One JSON document on standard output instead of lines for people.
     pub(crate) json: bool,
 }
 
-/// What a command found: its fields are the JSON keys, its `Display` is what people read.
-pub(crate) trait Answer: Serialize + fmt::Display {}
-
-impl<T: Serialize + fmt::Display> Answer for T {}
-
 impl Output {
-    /// Prints the answer of a command, once, at its end.
-    pub(crate) fn answer(self, answer: &impl Answer) {
-        let text = if self.json {
-            document(answer)
-        } else {
-            format!("{answer}\n")
-        };
-        write_all(&text);
+    /// Prints the output of a command whose text is its `Display`, once, at its end.
+    pub(crate) fn answer(self, output: &(impl Serialize + fmt::Display)) {
+        self.rendered(output, output);
     }
 
-    /// Prints the output of an operation, once, at the end of its command: as JSON, or as text.
+    /// Prints the output of a command, once, at its end: as JSON, or as text.
     pub(crate) fn rendered(self, output: &impl Serialize, text: &impl fmt::Display) {
         let text = if self.json {
             document(output)
@@ -108,7 +98,7 @@ impl Output {
         }
     }
 
-    /// Says why the command failed: on standard error for people, and as `{"error": …}` for scripts.
+    /// Prints why the command failed: on standard error for people, and as `{"error": …}` for scripts.
     pub(crate) fn failure(self, failure: &Failure) {
         let reason = with_places(&failure.to_string());
         aside(&format!("error: {reason}"));
@@ -118,8 +108,7 @@ impl Output {
     }
 }
 
-/// Something worth knowing that is no part of the answer: standard error. Where nobody reads that any more there is nobody to
-/// tell.
+/// Prints a warning or a note on standard error. A closed standard error is ignored.
 pub(crate) fn aside(text: &str) {
     let taken = HANDED_OVER
         .with_borrow_mut(|said| said.as_mut().map(|said| said.asides.push(text.to_owned())));
@@ -141,15 +130,15 @@ pub(crate) fn error_document(reason: &str) -> String {
     document(&serde_json::json!({ "error": reason }))
 }
 
-/// The JSON document of an answer.
+/// The JSON document of an output.
 pub(crate) fn document(value: &impl Serialize) -> String {
-    // Answers hold numbers, texts and lists of them, which always have a JSON form; NaN becomes null.
+    // Outputs consist of numbers, texts and lists of them, which always have a JSON form; NaN becomes null.
     let text = serde_json::to_string_pretty(value)
         .unwrap_or_else(|error| format!("{{\"error\": \"the answer has no JSON form: {error}\"}}"));
     text + "\n"
 }
 
-/// Writes to standard output. What it does not take is told at the end, by [`delivered`].
+/// Writes to standard output. [`delivered`] reports a failure at the end.
 pub(crate) fn write_all(text: &str) {
     let taken =
         HANDED_OVER.with_borrow_mut(|said| said.as_mut().map(|said| said.document.push_str(text)));
@@ -165,7 +154,7 @@ pub(crate) fn write_all(text: &str) {
     }
 }
 
-/// Why what was written did not arrive. A reader that has gone away (`swimmer … | head`) is no reason to fail.
+/// Message of a failed write. Returns `None` if the reader closed the pipe (`swimmer … | head`), which is no failure.
 pub(crate) fn loss(written: io::Result<()>) -> Option<String> {
     written
         .err()
@@ -175,10 +164,10 @@ pub(crate) fn loss(written: io::Result<()>) -> Option<String> {
         })
 }
 
-/// Whether standard output took all that was written to it.
+/// Checks that all output was written.
 ///
 /// # Errors
-/// [`Failure::Answered`] where it did not: there is no use in writing more to it.
+/// [`Failure::Answered`] if not, because nothing more can be written to it.
 pub(crate) fn delivered() -> Outcome {
     LOST.get()
         .map_or(Ok(()), |lost| Err(Failure::Answered(lost.clone())))

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+pub(crate) use operations::text::{degrees as angle, small};
 use swimmer_model::CrossingShare;
 
 /// A length in metres, printed in millimetres below one metre.
@@ -24,13 +25,7 @@ pub(crate) fn decimals([low, high]: [f64; 2]) -> usize {
     decimals
 }
 
-/// An angle in radians, printed in degrees.
-pub(crate) fn angle(radians: f64) -> String {
-    // Adding zero turns a rounded -0.000 into 0.000.
-    format!("{:.3}°", (radians.to_degrees() * 1e3).round() / 1e3 + 0.0)
-}
-
-/// Where links cross, as a share of the cycle.
+/// Share of the cycle in which links cross.
 pub(crate) fn crossing(of_cycle: f64) -> String {
     if of_cycle > 0.0 {
         format!("on {:.1} % of the cycle", of_cycle * 100.0)
@@ -39,7 +34,7 @@ pub(crate) fn crossing(of_cycle: f64) -> String {
     }
 }
 
-/// The same, where a side link may also pass through the middle one in no time.
+/// Share of the cycle in which links cross, and whether a side link passes through the middle one at an instant.
 pub(crate) fn crossing_or_folding(share: &CrossingShare<f64>) -> String {
     match (share.of_cycle > 0.0, share.folds) {
         (false, true) => "at instants (|φ| = 180°: a side link on the middle one)".to_owned(),
@@ -51,18 +46,7 @@ pub(crate) fn crossing_or_folding(share: &CrossingShare<f64>) -> String {
     }
 }
 
-/// A number without a unit that may be very small.
-pub(crate) fn small(value: f64) -> String {
-    if value == 0.0 {
-        "0".to_owned()
-    } else if value.abs() >= 0.001 {
-        format!("{value:.4}")
-    } else {
-        format!("{value:.1e}")
-    }
-}
-
-/// How far `value` is from `reference`, signed, in per cent; absolute where the reference is zero.
+/// Relative deviation of `value` from `reference`, signed. Returns `None` if the reference is zero.
 pub(crate) fn relative(value: f64, reference: f64) -> Option<f64> {
     (reference != 0.0).then(|| value / reference - 1.0)
 }

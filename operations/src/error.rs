@@ -65,6 +65,13 @@ fn with_causes(error: &dyn StdError) -> String {
     text
 }
 
+impl From<Error> for String {
+    /// The sentence for the user.
+    fn from(error: Error) -> Self {
+        error.message
+    }
+}
+
 impl From<FileError> for Error {
     /// A file that cannot be read or is invalid is bad input; one that cannot be written is a failure.
     fn from(error: FileError) -> Self {

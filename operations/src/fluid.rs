@@ -5,6 +5,8 @@ use serde::Serialize;
 use swimmer_files::{AnyGait, SwimmerFile};
 use swimmer_model::Model;
 
+use crate::text::small;
+
 /// Largest Reynolds number at which the model, which has no inertia, holds.
 const LARGEST_REYNOLDS: f64 = 0.1;
 
@@ -75,14 +77,7 @@ impl FluidLoad {
     }
 }
 
-/// A torque in millinewton metres with four digits.
+/// A torque \[N m\], printed in millinewton metres.
 pub fn newton_metres(torque: f64) -> String {
-    let millis = torque * 1e3;
-    if millis == 0.0 {
-        "0 mN m".to_owned()
-    } else if millis.abs() >= 0.001 {
-        format!("{millis:.4} mN m")
-    } else {
-        format!("{millis:.1e} mN m")
-    }
+    format!("{} mN m", small(torque * 1e3))
 }

@@ -22,6 +22,7 @@ pub mod played;
 pub mod robot_limits;
 pub mod simulate;
 mod source;
+pub mod text;
 
 pub use context::{Context, Files};
 pub use error::{Error, ErrorKind};

@@ -3,6 +3,8 @@
 use forecast::{Forecast, Loss, Stage};
 use serde::Serialize;
 
+use crate::text::degrees;
+
 /// Forecast of a played cycle.
 #[derive(Debug, Clone, Serialize)]
 pub struct PlayedCycle {
@@ -140,12 +142,6 @@ fn swallowed(forecast: &Forecast) -> Option<String> {
             share * 100.0
         )
     })
-}
-
-/// An angle in degrees with three decimals.
-fn degrees(radians: f64) -> String {
-    // Adding zero turns a rounded -0.000 into 0.000.
-    format!("{:.3}°", (radians.to_degrees() * 1e3).round() / 1e3 + 0.0)
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use std::path::Path;
 use nalgebra::Vector2;
 use serde::Deserialize;
 use serde_json::Value;
-use swimmer_files::{AnyGait, GaitFile, GaitSpec, Provenance, SwimmerFile};
+use swimmer_files::{AnyGait, GaitFile, GaitSpec, GaitSpecError, Provenance, SwimmerFile};
 use swimmer_model::Model;
 
 use crate::{Context, Error, Files};
@@ -63,7 +63,9 @@ pub fn warn_if_outdated(path: &Path, context: &mut Context) -> Result<(), Error>
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(try_from = "Value")]
 pub enum GaitSource {
-    /// A closed form, a path, or the text of a gait file, which has several lines.
+    /// A closed form or a path.
+    Spec(GaitSpec),
+    /// The text of a gait file, which has several lines, or of a closed form or a path.
     Text(String),
     /// Samples at equal steps of the phase, φ₁ and φ₂ \[rad\] alternating, without the last, which equals the first.
     Even(Vec<f64>),
@@ -87,9 +89,9 @@ impl TryFrom<Value> for GaitSource {
     }
 }
 
-impl From<&GaitSpec> for GaitSource {
-    fn from(spec: &GaitSpec) -> Self {
-        Self::Text(spec.to_string())
+impl From<GaitSpec> for GaitSource {
+    fn from(spec: GaitSpec) -> Self {
+        Self::Spec(spec)
     }
 }
 
@@ -102,9 +104,9 @@ impl GaitSource {
     /// # Errors
     /// The text is no gait, or the file cannot be read or is invalid.
     pub fn read(&self, files: Files) -> Result<AnyGait, Error> {
-        match self.spec(files)? {
-            Some(spec) => Ok(spec.load()?),
-            None => curve(&self.samples()?),
+        match self.resolve(files)? {
+            Resolved::Spec(spec) => Ok(spec.load()?),
+            Resolved::Samples(file) => curve(&file),
         }
     }
 
@@ -113,16 +115,17 @@ impl GaitSource {
     /// # Errors
     /// As [`read`](Self::read).
     pub fn load_for(&self, swimmer: &SwimmerFile, context: &mut Context) -> Result<AnyGait, Error> {
-        if let Some(spec) = self.spec(context.files)? {
-            return spec.load_by(|path| {
+        match self.resolve(context.files)? {
+            Resolved::Spec(spec) => spec.load_by(|path| {
                 let file = GaitFile::load(path)?;
                 warn_if_for_another(swimmer, &file, &spec.to_string(), context);
                 Ok(file)
-            });
+            }),
+            Resolved::Samples(file) => {
+                warn_if_for_another(swimmer, &file, "the gait", context);
+                curve(&file)
+            }
         }
-        let file = self.samples()?;
-        warn_if_for_another(swimmer, &file, "the gait", context);
-        curve(&file)
     }
 
     /// Reads the gait with all that its file says; a circle or a square becomes samples.
@@ -130,43 +133,46 @@ impl GaitSource {
     /// # Errors
     /// As [`read`](Self::read).
     pub fn file(&self, files: Files) -> Result<GaitFile, Error> {
-        match self.spec(files)? {
-            Some(GaitSpec::File { path, reversed }) => {
+        match self.resolve(files)? {
+            Resolved::Spec(GaitSpec::File { path, reversed }) => {
                 let file = GaitFile::load(&path)?;
                 Ok(if reversed { file.reversed() } else { file })
             }
-            Some(closed_form) => Ok(GaitFile::sampled(&closed_form.load()?, SAMPLES)),
-            None => self.samples(),
+            Resolved::Spec(closed_form) => Ok(GaitFile::sampled(&closed_form.load()?, SAMPLES)),
+            Resolved::Samples(file) => Ok(file),
         }
     }
 
-    /// The closed form or the path that a text of one line names. Returns `None` for the text of a file and for samples.
-    fn spec(&self, files: Files) -> Result<Option<GaitSpec>, Error> {
-        let Self::Text(text) = self else {
-            return Ok(None);
+    fn resolve(&self, files: Files) -> Result<Resolved, Error> {
+        let spec = match self {
+            Self::Even(phi) => return Ok(Resolved::Samples(even(phi))),
+            Self::Text(text) if text.contains('\n') => {
+                let file = GaitFile::parse(text, Path::new("gait file"))?;
+                return Ok(Resolved::Samples(file));
+            }
+            Self::Text(text) => text
+                .parse()
+                .map_err(|error: GaitSpecError| Error::bad_input(&error))?,
+            Self::Spec(spec) => spec.clone(),
         };
-        if text.contains('\n') {
-            return Ok(None);
-        }
-        match text.parse() {
-            Ok(GaitSpec::File { path, .. }) if files == Files::Unavailable => {
+        match spec {
+            GaitSpec::File { path, .. } if files == Files::Unavailable => {
                 Err(Error::refused(format!(
                     "`{}` is neither circle:ANGLE nor square:ANGLE; open a gait file instead",
                     path.display()
                 )))
             }
-            Ok(spec) => Ok(Some(spec)),
-            Err(error) => Err(Error::bad_input(&error)),
+            spec => Ok(Resolved::Spec(spec)),
         }
     }
+}
 
-    /// The samples of a file's text, or those given.
-    fn samples(&self) -> Result<GaitFile, Error> {
-        match self {
-            Self::Text(text) => Ok(GaitFile::parse(text, Path::new("gait file"))?),
-            Self::Even(phi) => Ok(even(phi)),
-        }
-    }
+/// A gait before its curve is made.
+enum Resolved {
+    /// A closed form, or a path that is still to be read.
+    Spec(GaitSpec),
+    /// Samples, from the text of a file or given as such.
+    Samples(GaitFile),
 }
 
 fn curve(file: &GaitFile) -> Result<AnyGait, Error> {

@@ -151,8 +151,8 @@ fn module(toolchain: &Toolchain, name: &str, level: &str) -> Outcome<PathBuf> {
 /// Compresses a module for the page: gzip, which every browser can unpack, by Zopfli, which packs it about 4 % smaller than zlib.
 fn packed(module: &Path) -> Outcome<PathBuf> {
     let small = module.with_extension("wasm.gz");
-    let age = |path: &Path| std::fs::metadata(path).and_then(|data| data.modified());
-    if let (Ok(built), Ok(packed)) = (age(module), age(&small))
+    let modified = |path: &Path| std::fs::metadata(path).and_then(|data| data.modified());
+    if let (Ok(built), Ok(packed)) = (modified(module), modified(&small))
         && built < packed
     {
         return Ok(small);

@@ -1,4 +1,4 @@
-//! The command line as one type; one file for each subcommand: its arguments, what it calls, its answer.
+//! The command line as one type, with one file for each subcommand: its arguments, the call, its output.
 
 pub(crate) mod atlas;
 pub(crate) mod calibrate;
@@ -78,7 +78,7 @@ pub(crate) enum Command {
     Man(shell::Man),
 }
 
-/// The command line, with an example in each help, and no option there that changes nothing.
+/// The command line, with an example in each help text and without options that have no effect.
 pub(crate) fn command() -> clap::Command {
     examples::with_examples(Arguments::command()).mut_subcommand("robot", |robot| {
         let virtual_robot = ["board", "firmware", "emulator", "firmware_log"];
@@ -95,7 +95,7 @@ pub(crate) fn command() -> clap::Command {
     })
 }
 
-/// The command, where one of its subcommands shows none of these options, which all of them take.
+/// The command with these options, which every subcommand accepts, hidden in one subcommand.
 fn without(command: clap::Command, action: &str, names: &[&str]) -> clap::Command {
     let hidden: Vec<_> = command
         .get_arguments()
@@ -105,7 +105,7 @@ fn without(command: clap::Command, action: &str, names: &[&str]) -> clap::Comman
     command.mut_subcommand(action, |action| action.args(hidden))
 }
 
-/// Runs what was asked for.
+/// Runs a subcommand.
 ///
 /// # Errors
 /// As the command.

@@ -111,7 +111,7 @@ impl Simulate {
         let mut context = Context::on_disk();
         let subject = Subject::load(
             &SwimmerSource::from(self.swimmer.as_str()),
-            &GaitSource::from(&self.gait),
+            &GaitSource::from(self.gait.clone()),
             &mut context,
         )
         .and_then(|subject| {

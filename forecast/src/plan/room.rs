@@ -1,4 +1,4 @@
-//! Whether a plan stays within its tank.
+//! Check that a plan stays within its tank.
 
 use std::sync::OnceLock;
 
@@ -12,15 +12,15 @@ use crate::losses::tolerance;
 use crate::path::Polyline;
 use crate::tank::{Tank, meets_wall, touching};
 
-/// Looks at the body a cycle.
+/// Samples of the body per cycle.
 const LOOKS: usize = 72;
-/// Cycles are looked at in sizes, each so many times smaller than the one before.
+/// Ratio of successive cycle sizes at which the swept area is computed.
 const RATIO: f64 = 0.9;
 
-/// The walls, and who swims between them.
+/// The walls, and the swimmer between them.
 pub(super) struct Room<'a> {
     model: &'a Model<f64>,
-    /// Within the margin.
+    /// The tank without its margin. `None` if there are no walls.
     tank: Option<Tank>,
 }
 
@@ -33,13 +33,13 @@ impl<'a> Room<'a> {
         Self { model, tank }
     }
 
-    /// Whether the body in this shape and pose stays clear of the walls.
+    /// Returns true if the body in this shape and pose stays clear of the walls.
     pub(super) fn fits(&self, pose: &Pose<f64>, phi: &Vector2<f64>) -> bool {
         let touching = |tank: Tank| touching(self.model.swimmer(), &tank, pose, phi);
         self.tank.and_then(touching).is_none()
     }
 
-    /// Whether links through these points, and spheres around those, do.
+    /// Returns true if links through these points and spheres around those centres stay clear of the walls.
     fn holds(&self, pose: &Pose<f64>, links: &[Vector2<f64>], spheres: &[Vector2<f64>]) -> bool {
         let Some(tank) = &self.tank else { return true };
         let (sin, cos) = pose.theta.sin_cos();
@@ -53,14 +53,14 @@ impl<'a> Room<'a> {
         inside(links, 0.0) && inside(spheres, self.model.swimmer().sphere_radius)
     }
 
-    /// Whether the way that the servos take does, from the straight shape at this pose.
+    /// Returns true if the servos' path from the straight shape at this pose stays clear of the walls.
     pub(super) fn leaves_played(&self, from: &Pose<f64>, way: &Polyline) -> bool {
         let meets = |tank: Tank| meets_wall(self.model, way, &tank, from);
         self.tank.and_then(meets).is_none()
     }
 }
 
-/// What cycles of a family sweep over.
+/// Areas swept by the cycles of a family.
 pub(super) struct Sweeps<'a> {
     pub(super) room: &'a Room<'a>,
     pub(super) nets: &'a Nets,
@@ -79,11 +79,11 @@ impl Default for SweptAreas {
     }
 }
 
-/// Where the body gets during a cycle, in the frame of its start. A tank is convex: corners of convex hulls are enough.
+/// Area swept during a cycle, in the frame of its start. A tank is convex, so corners of convex hulls are enough.
 #[derive(Debug, Clone)]
 struct Swept {
     links: Vec<Vector2<f64>>,
-    /// Of its centre.
+    /// Convex hull of the sphere's centre.
     sphere: Vec<Vector2<f64>>,
 }
 
@@ -117,8 +117,8 @@ impl<'a> Sweeps<'a> {
         }
     }
 
-    /// Where so many cycles lead from this pose; none where they meet a wall. A cycle needs no more room than one of the next
-    /// larger size that is looked at.
+    /// Pose after this number of cycles. Returns `None` if they meet a wall. A cycle needs at most the space of the next larger size
+    /// at which the swept area is computed.
     pub(super) fn after(
         &self,
         pose: &Pose<f64>,
@@ -142,7 +142,7 @@ impl<'a> Sweeps<'a> {
         let mut pose = *pose;
         for _ in 0..cycles {
             let next = pose * net;
-            // Run backwards it sweeps over what it does forwards from its end.
+            // Backwards it sweeps the area that it sweeps forwards from its end.
             let start = if member.backwards { &next } else { &pose };
             if !self.room.holds(start, &swept.links, &swept.sphere) {
                 return None;
@@ -153,7 +153,7 @@ impl<'a> Sweeps<'a> {
     }
 }
 
-/// The sizes that are looked at, from the largest.
+/// Sizes at which the swept area is computed, from the largest.
 pub(super) fn sizes() -> impl Iterator<Item = f64> {
     std::iter::successors(Some(LARGEST), |size| Some(size * RATIO))
         .take_while(|size| *size > SMALLEST)

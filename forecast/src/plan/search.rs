@@ -1,4 +1,4 @@
-//! The search: chains of three legs between ways out of both ends.
+//! Plan search: chains of three legs between approaches to both ends.
 
 use swimmer_model::{Model, Pose};
 
@@ -8,26 +8,26 @@ use super::room::{Room, Sweeps};
 use super::way_out::{Way, ways_out};
 use super::{Errand, Plan, PlanError, Step, duration};
 
-/// Where there is no room for the cycles of a leg, so many times as many smaller ones are tried.
+/// Factors by which a leg is divided into smaller cycles if its cycles do not fit between the walls.
 const SMALLER: [u32; 5] = [1, 2, 4, 8, 16];
-/// A plan whose duration is more than this share of a known one's is not worth its further legs.
+/// Plans that take more than this share of a known plan's duration are not extended.
 const WORTH: f64 = 0.98;
-/// Headings that are tried where any will do.
+/// Headings that are tried if the target has none.
 const HEADINGS: usize = 24;
 
-/// How hard a search tries.
+/// Effort of a search.
 pub(super) struct Effort {
-    /// Room that a plan leaves beyond the margin \[m\]: within their dead band servos rest beside the ideal path.
+    /// Distance that a plan leaves beyond the margin \[m\], because servos rest anywhere within their dead band.
     pub(super) spare: f64,
-    /// Whether ways out are looked for also where the largest cycles have room.
+    /// Also search for approaches if the largest cycles fit.
     everywhere: bool,
-    /// Pairs of ways out that are tried.
+    /// Pairs of approaches that are tried.
     pairs: usize,
-    /// Chains between such a pair that are aimed.
+    /// Chains between such a pair that are refined to meet the target.
     aimed: usize,
 }
 
-/// The next where one finds nothing.
+/// Efforts in order; the next is tried if one finds no plan.
 pub(super) const EFFORTS: [Effort; 3] = {
     let quick = Effort {
         spare: 0.001,
@@ -48,26 +48,26 @@ pub(super) const EFFORTS: [Effort; 3] = {
     [quick, narrow, thorough]
 };
 
-/// What a search has seen.
+/// Counts of a search, for its error message.
 #[derive(Debug, Default)]
 pub(super) struct Seen {
-    /// Chains of legs that meet the target, and those of them that the walls leave.
+    /// Chains of legs that meet the target, and those of them that stay clear of the walls.
     pub(super) met: [usize; 2],
-    /// Why the robot would not play the first of those that it would not.
+    /// Reason why the robot refuses the first refused chain.
     pub(super) refused: Option<PlanError>,
 }
 
-/// A way out of the start and one into the target.
+/// An approach from the start and one to the target.
 struct Pair<'a> {
     outward: &'a Way,
     inward: &'a Way,
-    /// What legs between them have to bring.
+    /// Net motion required of the legs between them.
     wanted: Pose<f64>,
-    /// A chain of them takes about this long at least \[s\].
+    /// Approximate lower bound of a chain's duration \[s\].
     least: f64,
 }
 
-/// The quickest plan with these gaits, where there is one that is quicker than a known one: else that one.
+/// The quickest plan with these gaits, or the known plan if none is quicker.
 pub(super) fn quickest(
     model: &Model<f64>,
     errand: &Errand,
@@ -150,7 +150,7 @@ pub(super) fn quickest(
     best
 }
 
-/// Chains of legs from this pose on that bring what is wanted and leave the walls alone, the quickest first.
+/// Chains of legs from this pose with the required net motion that stay clear of the walls, the quickest first.
 pub(super) fn legs_between(
     sweeps: &Sweeps<'_>,
     begun: &Pose<f64>,
@@ -168,7 +168,7 @@ pub(super) fn legs_between(
     within
 }
 
-/// Poses that the errand may end in.
+/// Poses in which the plan may end.
 pub(super) fn ends(errand: &Errand) -> Vec<Pose<f64>> {
     let any = (0..HEADINGS).map(|k| std::f64::consts::TAU * k as f64 / HEADINGS as f64);
     let headings = errand
@@ -178,7 +178,7 @@ pub(super) fn ends(errand: &Errand) -> Vec<Pose<f64>> {
     headings.into_iter().map(end).collect()
 }
 
-/// Legs that leave the walls alone, from this pose on, and bring what is wanted: each with the largest cycles that have room.
+/// Legs from this pose with the required net motion that stay clear of the walls, each with the largest cycles that fit.
 fn fitted(
     sweeps: &Sweeps<'_>,
     begun: &Pose<f64>,

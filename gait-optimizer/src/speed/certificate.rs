@@ -1,9 +1,9 @@
-//! The conditions of a fastest gait, from its curve alone: nothing of the search is asked.
+//! Conditions of a fastest gait, evaluated from its curve alone, independent of the search.
 //!
 //! With p along the net displacement d, V = |d|/T and the height h = μ · F, the costate σ of Φ obeys H = σ·Φ̇ − V ≡ 0,
 //! Φ̇ᵢ = ωᵢ sgn σᵢ and σ̇ = h (−Φ̇₂, Φ̇₁) (and η∇g, η ≥ 0, on a bound g ≤ 0). The rates are read off the curve, whose servos run at
-//! them. What is left open, the multiplier of rotation (and of the heading, where one is prescribed), and how far σ jumps
-//! where a corner rests on a bound, follows from the integrals of h between switches by least squares.
+//! them. The unknowns follow from the integrals of h between switches by least squares: the multiplier of rotation (and of a
+//! prescribed heading), and the jump of σ at each corner on a bound.
 
 mod affine;
 mod from_anywhere;
@@ -29,14 +29,14 @@ use switching::Switching;
 pub(super) const RESTS: f64 = 1e-8;
 
 impl Asked {
-    /// Whether gaits join at a shape.
+    /// Returns true if gaits join at this shape.
     pub(super) fn joins(&self, phi: &Vector2<f64>) -> bool {
         self.anchor
             .is_some_and(|anchor| (anchor - phi).norm() < RESTS)
     }
 }
 
-/// A cycle as a gait, held against the conditions; none where its samples make no gait.
+/// Certifies a cycle as a gait. Returns `None` if its samples are no valid gait.
 pub(super) fn of_cycle(
     setting: &Setting,
     bounds: Bounds,
@@ -49,8 +49,7 @@ pub(super) fn of_cycle(
     Some((gait, certificate))
 }
 
-/// Holds one cycle, timed as it shall run, against the conditions. Of the swimmer with L = 1; where there are members, of the most
-/// displacement of these.
+/// Certifies one cycle with its timing, for the swimmer with L = 1, or for the weighted displacement of the members if there are any.
 pub(crate) fn certificate(
     (model, members): (&Model<f64>, &[(Member, f64)]),
     region: &Region,
@@ -98,7 +97,7 @@ pub(crate) fn certificate(
         members,
     };
     match second_order::least(&setting, &legs) {
-        // No shift is left that keeps all equations.
+        // No direction keeps all constraints.
         Some(f64::INFINITY) => {}
         Some(least) if least.is_finite() => {
             checks.push(Condition::NoBetterCorners.check(least));
@@ -137,7 +136,7 @@ fn of_the_curve(
     checks.map(|check| check.seen_by(SeenBy::Samples)).collect()
 }
 
-/// Whether an arc is one along a bound.
+/// Returns true if an arc lies on a bound.
 pub(super) fn on_bound(leg: &Leg) -> bool {
     matches!(
         leg.kind,

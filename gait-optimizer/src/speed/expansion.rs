@@ -1,5 +1,4 @@
-//! What the fastest gait has least, ln of its period less that of its measure, expanded about a chain under equations; and the step
-//! of Newton's method from there.
+//! Second-order expansion of ln(period / measure) about a chain under constraints, and the Newton step from there.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -8,20 +7,20 @@ use super::ensemble;
 use super::quadrature::Rule;
 use super::setting::Setting;
 
-/// To second order of what is to be the least, to first of the equations.
+/// Expansion of the objective to second order and of the constraints to first order.
 pub(super) struct Expansion {
     pub(super) net: Net,
-    /// Of what is to be the least.
+    /// Gradient of the objective.
     pub(super) gradient: DVector<f64>,
-    /// Of the equations, those of the whole chain first.
+    /// Residuals of the constraints, those on the whole chain first.
     pub(super) values: DVector<f64>,
     pub(super) slopes: DMatrix<f64>,
-    /// Second derivatives of the Lagrangian; 1 where its multipliers are not known.
+    /// Second derivatives of the Lagrangian, or the identity if its multipliers are unknown.
     pub(super) hessian: DMatrix<f64>,
 }
 
 impl Expansion {
-    /// With what holds of the whole chain, and room for so many more equations; none where the chain leads nowhere.
+    /// Expansion with the constraints on the whole chain and space for `more` further ones. Returns `None` if the net motion is zero.
     pub(super) fn new(
         setting: &Setting,
         (layout, rule): (&Layout, &Rule),
@@ -63,7 +62,7 @@ impl Expansion {
         })
     }
 
-    /// How far from stationary under the equations.
+    /// Residual of the stationarity conditions.
     pub(super) fn residual(&self, y: &DVector<f64>) -> f64 {
         let pull = self.slopes.tr_mul(y);
         (&self.gradient + pull).amax().max(self.values.amax())
@@ -89,16 +88,16 @@ impl Expansion {
         })
     }
 
-    /// The multipliers that come nearest to a stationary point.
+    /// Least-squares multipliers.
     pub(super) fn nearest_multipliers(&self) -> Option<DVector<f64>> {
         let svd = self.slopes.transpose().svd(true, true);
         svd.solve(&-&self.gradient, 1e-12).ok()
     }
 
-    /// Least eigenvalue of the second variation where all equations hold to first order, and its shift.
+    /// Smallest eigenvalue of the reduced Hessian (second variation on the constraints' tangent space), and its eigenvector.
     pub(super) fn convexity(&self) -> (f64, DVector<f64>) {
         let size = self.gradient.len();
-        // An orthonormal basis of the shifts: what is left of the unit vectors beside the slopes.
+        // Orthonormal basis of the tangent space: the null space of the constraints' gradients.
         let qr = self.slopes.transpose().qr();
         let q = qr.q();
         let projector = DMatrix::identity(size, size) - &q * q.transpose();

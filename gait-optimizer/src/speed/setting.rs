@@ -1,4 +1,4 @@
-//! What is asked, and what every step of the search shares.
+//! Objective and constraints of a fastest-gait search, shared by all its steps.
 
 use nalgebra::{DMatrix, DVector, Vector2};
 use swimmer_model::Model;
@@ -9,17 +9,17 @@ use super::quadrature::Rule;
 use crate::member::Member;
 use crate::region::Region;
 
-/// What is to be the most per unit of time.
+/// Quantity to maximise per unit of time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) enum Goal {
     /// Net displacement, without net rotation.
     #[default]
     Distance,
-    /// Net rotation, wherever the gait leads.
+    /// Net rotation, whatever the displacement.
     Rotation,
 }
 
-/// Which way the gait shall lead, against its mean heading.
+/// Direction of the displacement, relative to the gait's mean heading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum HeadingRule {
     /// Any way.
@@ -32,7 +32,7 @@ pub enum HeadingRule {
 }
 
 impl HeadingRule {
-    /// By how much a heading misses, modulo half a turn (the gait run backwards leads the other way); none for any way.
+    /// Deviation from a heading, modulo half a turn, because the reversed gait leads the other way. Returns `None` for any direction.
     pub(crate) fn off(self, heading: f64) -> Option<f64> {
         use std::f64::consts::{FRAC_PI_2, PI};
         let aim = match self {
@@ -45,38 +45,38 @@ impl HeadingRule {
     }
 }
 
-/// What is asked of a gait, beside bounds and limits.
+/// Requirements on a gait other than bounds and limits.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Asked {
     pub(crate) heading: HeadingRule,
-    /// The period, where it is prescribed.
+    /// The period, if it is prescribed.
     pub(crate) period: Option<f64>,
     pub(crate) goal: Goal,
-    /// A shape that it must pass: there gaits join, and the costate may jump any way.
+    /// A shape that the gait must pass. Gaits join there, and the costate may jump in any direction.
     pub(crate) anchor: Option<Vector2<f64>>,
 }
 
-/// What every step of the search shares.
+/// Problem data of every step of the search.
 #[derive(Debug, Clone)]
 pub(crate) struct Setting<'a> {
-    /// Of the swimmer with L = 1.
+    /// Model of the swimmer with L = 1.
     pub(crate) model: &'a Model<f64>,
     pub(crate) region: &'a Region,
     /// Largest |φ̇ᵢ|.
     pub(crate) rates: [f64; 2],
     pub(crate) asked: Asked,
-    /// Whose displacements, with these weights, are to be the most; where there are none, the model's own. What holds of the
-    /// whole chain holds of the model alone.
+    /// Weighted members of an ensemble whose displacement is maximised; if empty, that of the model. Constraints on the whole
+    /// chain hold for the model alone.
     pub(crate) members: &'a [(Member, f64)],
 }
 
 impl Setting<'_> {
-    /// The least time in which the servos turn by this.
+    /// Shortest time in which the servos turn by this step.
     pub(crate) fn time(&self, way: &Vector2<f64>) -> f64 {
         (way.x.abs() / self.rates[0]).max(way.y.abs() / self.rates[1])
     }
 
-    /// What is to be the most per unit of time.
+    /// Quantity to maximise per unit of time.
     pub(crate) fn measure(&self, net: &Net) -> f64 {
         match self.asked.goal {
             Goal::Distance => net.distance(),
@@ -84,19 +84,19 @@ impl Setting<'_> {
         }
     }
 
-    /// Whether the heading is prescribed.
+    /// Returns true if the heading is prescribed.
     fn heads(&self) -> bool {
         self.asked.goal == Goal::Distance && self.asked.heading != HeadingRule::Any
     }
 
-    /// How many equations hold of a whole chain.
+    /// Number of constraints on the whole chain.
     pub(crate) fn equality_count(&self) -> usize {
         usize::from(self.asked.goal == Goal::Distance)
             + usize::from(self.heads())
             + usize::from(self.asked.period.is_some())
     }
 
-    /// Residuals of these equations: rotation, heading and period, as far as they are asked for.
+    /// Residuals of these constraints: rotation, heading and period, if required.
     pub(crate) fn residuals(&self, net: &Net, period: f64) -> Vec<f64> {
         let mut values = Vec::with_capacity(3);
         if self.asked.goal == Goal::Distance {
@@ -107,7 +107,7 @@ impl Setting<'_> {
         values
     }
 
-    /// Residuals of these equations, and their slopes.
+    /// Residuals of these constraints and their gradients.
     pub(crate) fn equalities(
         &self,
         layout: &Layout,
@@ -139,7 +139,7 @@ impl Setting<'_> {
         (net, self.residuals(&net, layout.period(z)), slopes)
     }
 
-    /// Of −ln of the measure alone, or with the multipliers of the equations.
+    /// Second derivatives of −ln of the measure, or of the Lagrangian if multipliers of the constraints are given.
     pub(crate) fn weights(&self, net: &Net, multipliers: Option<&[f64]>) -> Weights {
         let multiplier = |at: usize| {
             let all = multipliers.unwrap_or_default();
@@ -147,7 +147,7 @@ impl Setting<'_> {
         };
         match self.asked.goal {
             Goal::Distance => Weights {
-                // The members' own is added to it.
+                // The terms of the members are added.
                 log_distance: if self.members.is_empty() { -1.0 } else { 0.0 },
                 rotation: multiplier(0),
                 heading: if self.heads() { multiplier(1) } else { 0.0 },
@@ -159,7 +159,7 @@ impl Setting<'_> {
         }
     }
 
-    /// Second derivatives of ln of the period less that of the measure of the model alone, with the multipliers of the equations.
+    /// Second derivatives of ln(period / measure) of the model alone, with the multipliers of the constraints.
     pub(super) fn hessian(
         &self,
         (layout, rule, jets): (&Layout, &Rule, &[Jet]),

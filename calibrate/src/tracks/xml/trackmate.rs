@@ -27,17 +27,8 @@ pub(super) fn exported(
     )?;
     let particles = children(root, "particle").zip(0..);
     let tracks = particles.map(|(particle, index)| {
-        let detections = children(particle, "detection").map(|detection| {
-            Ok(Seen {
-                time_s: xml.number(detection, "t")? * frame_s,
-                place: [
-                    xml.number(detection, "x")?,
-                    xml.number(detection, "y")?,
-                    0.0,
-                ],
-                turn: None,
-            })
-        });
+        let detections = children(particle, "detection")
+            .map(|detection| seen(xml, detection, ["t", "x", "y"], frame_s));
         let seen: Vec<Seen> = detections.collect::<Result<_, TrackError>>()?;
         Ok((format!("{index}"), seen))
     });
@@ -72,15 +63,7 @@ pub(super) fn whole(
         .flat_map(|all| children(all, "SpotsInFrame"))
     {
         for spot in children(frame, "Spot") {
-            let seen = Seen {
-                time_s: xml.number(spot, "FRAME")? * frame_s,
-                place: [
-                    xml.number(spot, "POSITION_X")?,
-                    xml.number(spot, "POSITION_Y")?,
-                    0.0,
-                ],
-                turn: None,
-            };
+            let seen = seen(xml, spot, ["FRAME", "POSITION_X", "POSITION_Y"], frame_s)?;
             spots.extend(spot.attribute("ID").map(|id| (id, seen)));
         }
     }
@@ -123,6 +106,20 @@ fn frame_s(
         (None, Some(seconds)) => Ok(seconds),
         (None, None) => Ok(1.0 / xml.need_rate(root, reading)?),
     }
+}
+
+/// Detection of an element; the attributes are those of its frame number, x and y.
+fn seen(
+    xml: &Xml<'_>,
+    node: Node<'_, '_>,
+    [frame, x, y]: [&str; 3],
+    frame_s: f64,
+) -> Result<Seen, TrackError> {
+    Ok(Seen {
+        time_s: xml.number(node, frame)? * frame_s,
+        place: [xml.number(node, x)?, xml.number(node, y)?, 0.0],
+        turn: None,
+    })
 }
 
 fn seconds(unit: &str) -> Option<f64> {

@@ -1,5 +1,5 @@
-//! `swimmer optimize`: one command over an objective. [`Search`] loads the swimmer, writes and tells what is found; each objective
-//! has a file, with its options, its search and how its gait is told.
+//! `swimmer optimize`: one subcommand for each objective. [`Search`] loads the swimmer, writes the gait and prints the output; each
+//! objective has a file with its options, its search and the rows of its output.
 
 pub(crate) mod answer;
 mod displacement;
@@ -39,7 +39,7 @@ pub(crate) enum Optimize {
 }
 
 impl Optimize {
-    /// Finds the gait that was asked for.
+    /// Searches for the gait of the subcommand.
     pub(crate) fn run(self, output: Output) -> Outcome {
         match self {
             Self::Displacement(search) => search.run(output),
@@ -52,31 +52,31 @@ impl Optimize {
     }
 }
 
-/// What gaits are optimal for, with the options that belong to it.
+/// Objective of a search, with its options.
 pub(crate) trait Objective: clap::Args {
-    /// Whether `-o` is a folder of gaits.
+    /// True if `-o` is a folder of gaits.
     const FOLDER: bool = false;
-    /// What `-o` does.
+    /// Help text of `-o`.
     const WRITES: &'static str =
         "Write the gait, at constant power or as timed for the servos, as a gait file";
 
-    /// Finds the best gait, and says how it is told.
+    /// Searches for the best gait, and returns it with its output.
     ///
     /// # Errors
     /// Those of the search; nothing has been written then.
     fn search(&self, task: &Task) -> Outcome<Found>;
 }
 
-/// For which swimmer, and where to.
+/// Swimmer of a search, and the file to write.
 pub(crate) struct Task<'a> {
     file: SwimmerFile,
     output: Option<&'a Path>,
-    /// What the search took.
+    /// Duration of the search.
     seconds: Cell<f64>,
 }
 
 impl Task<'_> {
-    /// Runs the search, whose time is told.
+    /// Runs the search and measures its duration.
     fn timed<T>(&self, search: impl FnOnce() -> T) -> T {
         let begun = Instant::now();
         let found = search();
@@ -84,17 +84,17 @@ impl Task<'_> {
         found
     }
 
-    /// The same with its progress shown.
+    /// Runs the search, measures its duration and shows its progress.
     fn watched<T>(&self, what: &str, search: impl FnOnce(&(dyn Fn(f64) + Sync)) -> T) -> T {
         let progress = Progress::of_a_whole(what);
         self.timed(|| search(&|share| progress.at_share(share)))
     }
 }
 
-/// What a search leads to.
+/// Result of a search.
 pub(crate) struct Found {
     answer: Document,
-    /// As written; the names are those in a folder.
+    /// Gait files to write, with their names in a folder.
     gaits: Vec<(String, GaitFile)>,
 }
 

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::port::AnyPort;
 use crate::failure::{Failure, Outcome};
-use crate::output::{Answer, Output};
+use crate::output::Output;
 use crate::quantity::{self, Rows};
 
 /// An answer that ends a command with exit status 1: scripts find the reason beside its keys.
@@ -29,7 +29,11 @@ impl<A: fmt::Display> fmt::Display for Failed<'_, A> {
 ///
 /// # Errors
 /// Always, with [`Failure::Answered`].
-pub(super) fn answer_no(output: Output, answer: &impl Answer, reason: String) -> Outcome {
+pub(super) fn answer_no(
+    output: Output,
+    answer: &(impl Serialize + fmt::Display),
+    reason: String,
+) -> Outcome {
     output.answer(&Failed {
         answer,
         error: &reason,

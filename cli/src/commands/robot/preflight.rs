@@ -1,4 +1,4 @@
-//! What the robot and its tank will make of a gait, told before it is sent.
+//! Pre-flight: forecast of a gait on the robot and in its tank, before it is sent.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -21,7 +21,7 @@ use crate::failure::{Failure, Outcome};
 use crate::fit_file::load_fit;
 use crate::quantity::{self, Rows};
 
-/// How and where the gait is to be played.
+/// Options of the forecast.
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
     /// Foretell for this duration of a cycle
@@ -34,7 +34,7 @@ pub(super) struct Arguments {
     room: Room,
 }
 
-/// The tank, and where in it the swimmer starts.
+/// The tank, and the start pose in it.
 #[derive(Debug, clap::Args)]
 pub(super) struct Room {
     /// Foretell when the swimmer meets a wall of this tank: length x width, m
@@ -48,16 +48,16 @@ pub(super) struct Room {
     heading: f64,
 }
 
-/// A place in the tank, from its centre \[m\].
+/// A position in the tank, from its centre \[m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Place(Vector2<f64>);
 
-/// The swimmer that shall play, and its servos.
+/// The swimmer that plays the gait, and its servos.
 pub(super) struct Player {
     pub(super) name: String,
     pub(super) swimmer: Swimmer<f64>,
     pub(super) servos: Servos,
-    /// No swimmer file tells of the servos: theirs are the values of a good one.
+    /// No swimmer file describes the servos, so typical values are assumed.
     assumed: bool,
 }
 
@@ -72,7 +72,7 @@ impl Player {
         }
     }
 
-    /// The robot as it is configured; body and servos of the file, where one is named, with the robot's limits.
+    /// The robot as configured, or body and servos of the file, if one is named, with the robot's limits.
     pub(super) fn of_robot(
         hello: &HelloReply,
         configuration: &Configuration,
@@ -92,7 +92,7 @@ impl Player {
     }
 }
 
-/// The swimmer that a robot believes to be, with the name of the preset that it is.
+/// The swimmer of a robot's configuration, and the name of the preset that it equals.
 pub(super) fn configured(configuration: &Configuration) -> (String, Swimmer<f64>) {
     let presets = SwimmerFile::PRESETS
         .iter()
@@ -126,34 +126,34 @@ pub(super) fn configured(configuration: &Configuration) -> (String, Swimmer<f64>
     ("as configured on the robot".to_owned(), swimmer)
 }
 
-/// The decimal number that was meant by one in single precision.
+/// The shortest decimal number that rounds to this single-precision number.
 fn double(single: f32) -> f64 {
     f64::from_str(&single.to_string()).unwrap_or_else(|_| single.into())
 }
 
-/// What is foretold.
+/// Forecast of a gait on the robot.
 #[derive(Debug, Serialize)]
 pub(super) struct Preflight {
     gait: String,
     swimmer: String,
     max_rate_rad_s: f64,
-    /// What the robot allows.
+    /// Largest rate that the robot allows \[rad/s\].
     max_rate_allowed_rad_s: f64,
     /// Unit of the table's angles.
     table_step_rad: f64,
-    /// What one step of the pulses' timer turns a servo.
+    /// Angle of one step of the pulses' timer \[rad\].
     pulse_step_rad: f64,
     dead_band_rad: f64,
-    /// Nobody has measured it: no swimmer file with a `[servo]` was named.
+    /// True if the dead band is assumed, because no swimmer file with a `[servo]` was named.
     dead_band_assumed: bool,
-    /// Half width of the interval of the displacement, from the fit; `null` without one.
+    /// Half width of the displacement's interval, from the fit; `null` without a fit.
     displacement_error_m: Option<f64>,
     /// Level of that interval.
     level: Option<f64>,
     tank: Option<TankAnswer>,
     #[serde(flatten)]
     played: PlayedCycle,
-    /// Why it must not be played although the robot would.
+    /// Reason to refuse a gait that the robot would play.
     #[serde(skip)]
     pub(super) unseen_by_robot: Option<String>,
 }
@@ -162,7 +162,7 @@ pub(super) struct Preflight {
 struct TankAnswer {
     length_m: f64,
     width_m: f64,
-    /// `null`: no wall is met.
+    /// Cycles until a wall is met; `null` if none is.
     cycles: Option<f64>,
     seconds: Option<f64>,
     meets: Option<&'static str>,
@@ -170,7 +170,7 @@ struct TankAnswer {
 }
 
 impl Room {
-    /// Whether what was asked makes sense at all, before any robot is met.
+    /// Checks the options before any robot is contacted.
     ///
     /// # Errors
     /// [`Failure::BadInput`] for a start outside the tank.
@@ -190,7 +190,7 @@ impl Room {
         )))
     }
 
-    /// Where it starts.
+    /// The start pose.
     pub(super) fn start(&self) -> Pose<f64> {
         let Place(start) = self.start;
         Pose::new(start.x, start.y, self.heading)
@@ -198,7 +198,7 @@ impl Room {
 }
 
 impl Arguments {
-    /// Whether what was asked makes sense at all, before any robot is met.
+    /// Checks the options before any robot is contacted.
     ///
     /// # Errors
     /// [`Failure::BadInput`] for a start outside the tank.
@@ -206,10 +206,10 @@ impl Arguments {
         self.room.check()
     }
 
-    /// What is foretold of a gait.
+    /// Forecasts a gait.
     ///
     /// # Errors
-    /// [`Failure::BadInput`] for a fit or a swimmer that is none, [`Failure::Tried`] for a gait that no robot can play.
+    /// [`Failure::BadInput`] for an invalid fit or swimmer, [`Failure::Tried`] for a gait that no robot can play.
     pub(super) fn foretell(
         &self,
         name: &str,
@@ -265,7 +265,7 @@ impl Preflight {
         Self {
             gait: name.to_owned(),
             swimmer: player.name.clone(),
-            // The shortest period is where the fastest joint just reaches what is allowed.
+            // In the shortest period the fastest joint just reaches the allowed rate.
             max_rate_rad_s: allowed * told.verdict.min_period / told.played.period,
             max_rate_allowed_rad_s: allowed,
             table_step_rad: double(ANGLE_UNIT_RAD),
@@ -285,7 +285,7 @@ impl Preflight {
         }
     }
 
-    /// Refuses the gait for a reason that the robot cannot see, unless there is another one.
+    /// Refuses the gait for a reason that the robot cannot check, unless it is refused already.
     fn refuse(&mut self, reason: String) {
         if self.played.refused.is_none() {
             self.played.refused = Some(reason.clone());
@@ -293,7 +293,7 @@ impl Preflight {
         }
     }
 
-    /// Why the gait must not be played; `None` if it may.
+    /// Reason to refuse the gait. Returns `None` if it may be played.
     pub(super) fn refusal(&self) -> Option<&str> {
         self.played.refused.as_deref()
     }
@@ -368,7 +368,7 @@ impl TankAnswer {
 }
 
 impl TankAnswer {
-    /// Whether a wall is met before the first cycle.
+    /// Returns true if a wall is met before the first cycle.
     fn is_too_small(&self) -> bool {
         self.cycles.is_some_and(|cycles| cycles <= 0.0)
     }
@@ -437,7 +437,7 @@ mod tests {
         }
     }
 
-    /// A robot in single precision is taken for the decimal swimmer that it was told.
+    /// A robot's single-precision configuration is read back as the decimal swimmer that was sent.
     #[test]
     fn a_configured_robot_is_its_preset_or_its_own_numbers() {
         let robot = SwimmerFile::preset("robot").unwrap();

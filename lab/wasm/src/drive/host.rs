@@ -8,6 +8,7 @@ use host_link::Port as _;
 use host_link::port::{TracedFrame, TracedPort};
 use host_link::session::{Session, SessionConfig, Ticket};
 use link_protocol::{MAX_KNOTS, Request};
+use operations::{Files, GaitSource};
 use serde::Deserialize;
 use serde_json::json;
 use swimmer_files::{LinkFrame, link_log_bytes, parse_key};
@@ -15,7 +16,6 @@ use swimmer_files::{LinkFrame, link_log_bytes, parse_key};
 use super::memory_port::MemoryPort;
 use super::{Numbered, Opened, seconds_of, step_of, told};
 use crate::calls::{Answer, Lab, Outcome, json, parsed};
-use crate::input::GaitText;
 
 /// Largest number of frames in a log, about two hours of play; older frames are dropped.
 const LONGEST_LOG: usize = 400_000;
@@ -174,7 +174,7 @@ pub(super) fn request(lab: &mut Lab, bytes: &[u8]) -> Outcome {
 struct Upload {
     number: u32,
     now_s: f64,
-    gait: GaitText,
+    gait: GaitSource,
 }
 
 /// Uploads a gait as the same table as `swimmer robot upload`.
@@ -184,7 +184,7 @@ pub(super) fn upload(lab: &mut Lab, bytes: &[u8]) -> Outcome {
         now_s,
         gait,
     } = parsed(bytes)?;
-    let table = table(&gait.read()?, MAX_KNOTS)
+    let table = table(&gait.read(Files::Unavailable)?, MAX_KNOTS)
         .map_err(|why| format!("making a table of the gait for the robot: {why}"))?;
     let host: &mut Host = lab.kept.get(number)?;
     let now = seconds_of(now_s)?;

@@ -2,18 +2,19 @@
 
 use forecast::{Played, Servos, forecast, table};
 use link_protocol::{Configuration, HelloReply, MAX_KNOTS, crc32c};
+use operations::{Files, GaitSource};
 use serde::Deserialize;
 use serde_json::{Value, json};
 use twin::is_configured_as;
 
 use crate::calls::{Lab, Outcome, json, parsed};
-use crate::input::{GaitText, SwimmerText};
+use crate::input::SwimmerText;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Asked {
     swimmer: SwimmerText,
-    gait: GaitText,
+    gait: GaitSource,
     /// Period of a cycle.
     period_s: f64,
     /// Configuration of the connected robot, if any.
@@ -44,7 +45,7 @@ pub(super) fn preflight(_lab: &mut Lab, bytes: &[u8]) -> Outcome {
         period: asked.period_s,
         knots: MAX_KNOTS,
     };
-    let gait = asked.gait.read()?;
+    let gait = asked.gait.read(Files::Unavailable)?;
     let told = forecast(&model, &gait, &played).map_err(|why| why.to_string())?;
     let crc32 = table(&gait, MAX_KNOTS)
         .map(|table| crc32c(table.bytes()))

@@ -1,16 +1,17 @@
 //! `certify`: evaluates the necessary conditions for a gait, with the keys of `swimmer certify --json`.
 
 use gait_optimizer::{Bounds, Objective};
+use operations::{Files, GaitSource};
 use serde::Deserialize;
 
 use super::bounds::{BoundsAsked, objective};
 use crate::calls::{Lab, Outcome, json, parsed};
-use crate::input::{GaitText, SwimmerText};
+use crate::input::SwimmerText;
 
 #[derive(Deserialize)]
 struct Asked {
     swimmer: SwimmerText,
-    gait: GaitText,
+    gait: GaitSource,
     objective: Option<String>,
     #[serde(default)]
     bounds: BoundsAsked,
@@ -20,7 +21,7 @@ struct Asked {
 pub(super) fn certify(_: &mut Lab, bytes: &[u8]) -> Outcome {
     let asked: Asked = parsed(bytes)?;
     let swimmer = asked.swimmer.read()?;
-    let file = asked.gait.file()?;
+    let file = asked.gait.file(Files::Unavailable)?;
     let objective = objective(asked.objective.as_deref())?.unwrap_or(file.objective);
     if objective == Objective::Unspecified {
         return Err("certifying the gait: say what it shall be optimal for".to_owned());

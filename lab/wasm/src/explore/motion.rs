@@ -1,15 +1,16 @@
 //! `motion`: poses of one cycle for the animation, with the body and the force of the fluid along it.
 
+use operations::{Files, GaitSource};
 use serde::Deserialize;
 use swimmer_model::{Gait, Tolerance, trajectory};
 
 use crate::calls::{Lab, Outcome, numbers, parsed};
-use crate::input::{GaitText, SwimmerText};
+use crate::input::SwimmerText;
 
 #[derive(Deserialize)]
 struct Asked {
     swimmer: SwimmerText,
-    gait: GaitText,
+    gait: GaitSource,
     /// Number of equal steps of u.
     intervals: usize,
 }
@@ -20,7 +21,7 @@ struct Asked {
 pub(super) fn motion(_: &mut Lab, bytes: &[u8]) -> Outcome {
     let asked: Asked = parsed(bytes)?;
     let (_, model) = asked.swimmer.model()?;
-    let gait = asked.gait.read()?;
+    let gait = asked.gait.read(Files::Unavailable)?;
     let intervals = asked.intervals.clamp(1, 10_000);
     let mut out = Vec::with_capacity(26 * (intervals + 1));
     trajectory(&model, &gait, &Tolerance::default(), intervals, |point| {

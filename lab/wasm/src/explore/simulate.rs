@@ -1,18 +1,19 @@
 //! `net`, `simulate`, `gait-file` and `tank`: motion of one cycle, its gait file, and the number of cycles up to a wall of a tank.
 
 use forecast::{NetMotion, Tank, shortest_period, until_wall};
+use operations::{Files, GaitSource};
 use serde::{Deserialize, Serialize};
 use swimmer_files::{AnyGait, Objective};
 use swimmer_model::{Gait, Model, Pose, Tolerance, crossing_share, swim};
 
 use super::bounds::{BoundsAsked, objective};
 use crate::calls::{Answer, Lab, Outcome, json, parsed};
-use crate::input::{GaitText, SwimmerText};
+use crate::input::SwimmerText;
 
 #[derive(Deserialize)]
 struct Asked {
     swimmer: SwimmerText,
-    gait: GaitText,
+    gait: GaitSource,
     /// Period of a cycle \[s\].
     #[serde(default = "one_second")]
     period: f64,
@@ -65,14 +66,18 @@ impl Net {
 pub(super) fn net(_: &mut Lab, bytes: &[u8]) -> Outcome {
     let asked: Asked = parsed(bytes)?;
     let (_, model) = asked.swimmer.model()?;
-    json(&Net::of(&model, &asked.gait.read()?, asked.period))
+    json(&Net::of(
+        &model,
+        &asked.gait.read(Files::Unavailable)?,
+        asked.period,
+    ))
 }
 
 /// Simulates a gait and evaluates all quantities.
 pub(super) fn simulate(_: &mut Lab, bytes: &[u8]) -> Outcome {
     let asked: Asked = parsed(bytes)?;
     let (file, model) = asked.swimmer.model()?;
-    let gait = asked.gait.read()?;
+    let gait = asked.gait.read(Files::Unavailable)?;
     let mut peaks = [0.0_f64; 2];
     for look in 0..LOOKS {
         let rate = gait.at(look as f64 / LOOKS as f64).rate;
@@ -93,7 +98,7 @@ pub(super) fn simulate(_: &mut Lab, bytes: &[u8]) -> Outcome {
 #[derive(Deserialize)]
 struct FileAsked {
     swimmer: SwimmerText,
-    gait: GaitText,
+    gait: GaitSource,
     objective: Option<String>,
     #[serde(default)]
     bounds: BoundsAsked,
@@ -103,7 +108,7 @@ struct FileAsked {
 pub(super) fn gait_file(_: &mut Lab, bytes: &[u8]) -> Outcome {
     let asked: FileAsked = parsed(bytes)?;
     let swimmer = asked.swimmer.read()?;
-    let mut file = asked.gait.file()?;
+    let mut file = asked.gait.file(Files::Unavailable)?;
     if file.objective == Objective::Unspecified {
         file.objective = objective(asked.objective.as_deref())?.unwrap_or_default();
         file.bounds = asked.bounds.into();
@@ -116,7 +121,7 @@ pub(super) fn gait_file(_: &mut Lab, bytes: &[u8]) -> Outcome {
 #[derive(Deserialize)]
 struct TankAsked {
     swimmer: SwimmerText,
-    gait: GaitText,
+    gait: GaitSource,
     length_m: f64,
     width_m: f64,
 }
@@ -136,7 +141,12 @@ pub(super) fn tank(_: &mut Lab, bytes: &[u8]) -> Outcome {
         length: asked.length_m,
         width: asked.width_m,
     };
-    let meeting = until_wall(&model, &asked.gait.read()?, &tank, &Pose::identity());
+    let meeting = until_wall(
+        &model,
+        &asked.gait.read(Files::Unavailable)?,
+        &tank,
+        &Pose::identity(),
+    );
     json(&TankAnswer {
         cycles: meeting.map(|meeting| meeting.cycles),
         part: meeting.map(|meeting| meeting.part.word()),

@@ -14,7 +14,6 @@ use serde_json::Value;
 use super::super::answers::{Doing, Done, E_STOPPED, PAUSED_DETACHED, state};
 use super::super::port::AnyPort;
 use crate::failure::{Failure, Outcome};
-use crate::output::Answer;
 
 /// Something that the holder of the port does for another process. The word is the line on the socket.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -145,7 +144,7 @@ pub(in super::super) struct Relayed {
 
 impl Relayed {
     /// An answer, to be sent.
-    pub(in super::super) fn of(answer: &impl Answer) -> Self {
+    pub(in super::super) fn of(answer: &(impl Serialize + fmt::Display)) -> Self {
         Self {
             done: true,
             text: answer.to_string(),
