@@ -1,6 +1,6 @@
 //! How fast: wide files read, poses of them, fits of six runs, and a recording of twenty minutes from its bytes to the fit.
 
-#[path = "../tests/tank/mod.rs"]
+#[path = "../tests/campaigns/tank/mod.rs"]
 mod tank;
 
 use std::hint::black_box;

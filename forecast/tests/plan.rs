@@ -1,5 +1,5 @@
 //! Plans to random targets, as the servos play them, swum again by an integrator of this test's own that shares the local
-//! connection alone. (`tests/tests/playlist.rs` plays them on the twin.)
+//! connection alone. (`tests/tests/whole/playlist.rs` plays them on the twin.)
 
 use std::sync::OnceLock;
 
