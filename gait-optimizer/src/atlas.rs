@@ -2,11 +2,11 @@
 //!
 //! 1. Each start, a random Fourier curve, runs into a stationary curve of low order by Newton's method inside the bounds
 //!    ([`newton`]).
-//! 2. Curves that are one and the same gait are put together ([`distinct`]), images under the swimmer's own symmetries
-//!    and the reversed curve included.
-//! 3. Each that is left is polished by the maximum principle to an exact extremal, and certified, by its second variation over
-//!    all closed curves too. From a saddle of displacement the search goes on along the way up. What cannot be polished is
-//!    counted, never listed.
+//! 2. Curves that are the same gait are merged ([`distinct`]); images under the swimmer's own symmetries and the reversed curve
+//!    count as the same gait.
+//! 3. Each remaining curve is polished by the maximum principle to an exact extremal and certified; the certificate includes its
+//!    second variation over all closed curves. From a saddle of displacement the search continues along an ascent direction.
+//!    Curves that cannot be polished are counted, not listed.
 //!
 //! Gaits that the solvers of quarter gaits find are starts, too. Those that are certified for the very bounds of the atlas, and
 //! of displacement are no saddles among all closed curves, are listed in any case, each counted as one start that ended in it.
@@ -31,7 +31,7 @@ use crate::parallel::Watch;
 use crate::problem::{GaitClass, InvalidProblem, validated};
 use crate::region::Region;
 
-/// Which curves an atlas starts from.
+/// Origin of the curves that an atlas starts from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StartCurves {
     /// Fourier curves of several sizes, centres and aspects.
@@ -41,7 +41,7 @@ pub enum StartCurves {
     OffCentre,
 }
 
-/// What to make an atlas of.
+/// Inputs of an atlas.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AtlasProblem {
     /// The swimmer; its side links may differ.
@@ -51,9 +51,9 @@ pub struct AtlasProblem {
     pub objective: Objective,
     /// Bounds on the shapes: the largest angle and crossing links.
     pub bounds: Bounds,
-    /// How many starts.
+    /// Number of starts.
     pub starts: usize,
-    /// Which curves those are.
+    /// Origin of the start curves.
     pub from: StartCurves,
     /// Seed of the starts: the same seed gives the same atlas on any number of threads.
     pub seed: u64,
@@ -103,13 +103,13 @@ impl AtlasProblem {
 /// One locally optimal gait.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Optimum {
-    /// The gait with its numbers and its certificate. `gait.symmetric` tells whether it has the paper's two symmetries.
+    /// The gait with its figures and its certificate. `gait.symmetric` is set if it has the paper's two symmetries.
     pub gait: OptimalGait,
     /// Net displacement |d| over L, whatever its direction against the first sample's heading.
     pub distance_over_length: f64,
-    /// Whether the curve is simple: turns once and never crosses itself.
+    /// `true` for a simple curve: it turns once and does not cross itself.
     pub simple: bool,
-    /// How many of the starts ended in it, or in one of its images.
+    /// Number of starts that converged to this gait or to one of its images.
     pub found: usize,
 }
 
@@ -118,7 +118,7 @@ pub struct Optimum {
 pub struct Atlas {
     /// Certified optima, best first.
     pub optima: Vec<Optimum>,
-    /// How many starts there were: those asked for and the known gaits.
+    /// Number of starts: the requested ones and the known gaits.
     pub starts: usize,
     /// Starts that did not settle on any stationary curve.
     pub unsettled: usize,
@@ -180,7 +180,7 @@ pub fn atlas(problem: &AtlasProblem) -> Result<Atlas, AtlasError> {
     atlas_watched(problem, &|_| ())
 }
 
-/// As [`atlas()`], while somebody watches.
+/// [`atlas()`] with a progress callback.
 ///
 /// # Errors
 /// As [`atlas()`].

@@ -1,13 +1,13 @@
 //! Certificates for any gait from anywhere: the necessary conditions of an optimum, from the curve alone.
 //!
 //! A solver knows its multipliers; a file holds only samples. But the multipliers of an extremal follow from its curve: the
-//! momentum p is parallel to the net displacement, and the multiplier of rotation is what the conditions on the free arcs
-//! leave no choice about (for gaits with the paper's symmetries it is −p y at a quarter). So every condition can be asked
-//! of every closed curve ([`certify`]).
+//! momentum p is parallel to the net displacement, and the conditions on the free arcs determine the multiplier of the rotation
+//! (for gaits with the paper's symmetries it is −p y at a quarter). So every condition can be evaluated for every closed curve
+//! ([`certify`]).
 //!
-//! Slopes come from the polynomials of degree eight through neighbouring samples, never across a corner or the end of an
-//! arc. Polynomials of degree six tell how much the sampling leaves open: that much is added to the tolerances, and a gait
-//! that is sampled too coarsely fails the check of its sampling instead of passing the others by their width.
+//! Slopes come from the polynomials of degree eight through neighbouring samples, never across a corner or the end of an arc.
+//! Polynomials of degree six estimate the uncertainty of the sampling. It is added to the tolerances, and a gait that is sampled
+//! too coarsely fails the check of its sampling instead of passing the others by their width.
 
 mod ascent;
 mod bounds;
@@ -43,11 +43,11 @@ use symmetry::begun_on_the_diagonal;
 
 /// Directions closer than this make no corner \[rad\].
 const SMOOTH: f64 = 1e-6;
-/// Slopes by polynomials of degree eight and six through the samples may differ by this, over the slope, where no condition asks
-/// for them.
+/// Tolerance of the difference between slopes of degree eight and six, over the slope, for objectives without a condition on
+/// slopes.
 const COARSEST_WEAKLY: f64 = 1e-2;
 
-/// Why a gait cannot even be asked.
+/// Reason why a gait cannot be certified.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CertifyError {
     /// The swimmer's parameters are out of range.
@@ -62,7 +62,7 @@ pub enum CertifyError {
         GaitFile::FEWEST_SAMPLES
     )]
     TooFew {
-        /// How many there are.
+        /// Number of samples.
         samples: usize,
     },
     /// Nothing is known of what the gait shall be optimal for.
@@ -72,14 +72,14 @@ pub enum CertifyError {
     NoObjective,
 }
 
-/// Holds a gait against the necessary conditions of an optimum for `objective` within `bounds`.
+/// Evaluates the necessary conditions of an optimum for `objective` within `bounds`.
 ///
-/// `gait` is one cycle from any method, its arcs told or not; a clockwise gait is certified as its reverse, which is optimal
-/// exactly when the gait is. The certificate has the same numbers for a gait that was written to a file and read again.
+/// `gait` is one cycle from any method, with or without a list of arcs; a clockwise gait is certified as its reverse, which is
+/// optimal exactly when the gait is. The certificate has the same numbers for a gait that was written to a file and read again.
 ///
 /// # Errors
-/// [`CertifyError`] when there is no closed curve, no swimmer or no objective to ask about. A gait that is no optimum is no
-/// error: its certificate does not pass.
+/// [`CertifyError`] for an open curve, an invalid swimmer or an unsuitable objective. A gait that is not optimal is not an error:
+/// its certificate does not pass.
 ///
 /// ```
 /// use gait_optimizer::{Bounds, DisplacementProblem, Objective, certify, displacement};
@@ -128,7 +128,7 @@ pub fn farthest_in_period(
     Ok(turned_per_period(&model, (&timed, &curve), &region))
 }
 
-/// As [`certify`], of a gait whose displacement over L is known.
+/// [`certify`] for a gait with known displacement over L.
 fn certify_swum(
     of @ (swimmer, objective, _): (&Swimmer<f64>, Objective, &Bounds),
     gait: &GaitFile,
@@ -137,7 +137,7 @@ fn certify_swum(
     let model = Model::new(&swimmer.of_unit_length())?;
     let asked = |gait: &GaitFile, swum| of_samples(&model, of, gait, swum);
     AnyGait::from_file(gait)?;
-    // Across whose heading a gait moves and where it joins others is asked of the first sample; of all else it says nothing.
+    // The first sample matters only for sideways gaits, which have their heading there, and for joined gaits.
     let begun = (objective != Objective::Sideways && !objective.is_joined())
         .then(|| begun_on_the_diagonal(gait))
         .flatten();
@@ -150,7 +150,7 @@ fn certify_swum(
     }))
 }
 
-/// As [`certify_swum`], whatever the samples leave open.
+/// [`certify_swum`] without the uncertainty due to the samples.
 fn of_samples(
     model: &Model<f64>,
     (swimmer, objective, bounds): (&Swimmer<f64>, Objective, &Bounds),
@@ -217,13 +217,13 @@ pub(crate) fn certified(gait: OptimalGait) -> OptimalGait {
     }
 }
 
-/// The same of a gait in as many samples as it takes to decide whether it is an optimum among those of its symmetry, of so many first
-/// and twice as many each time; where no number of them will do, as it was first. None where it cannot be made.
+/// Certifies a gait with `samples` samples, then with twice as many up to 16 times, until it is decided if the gait is an optimum
+/// among those of its symmetry. Returns the first certificate if no number of samples decides, `None` if the gait cannot be made.
 pub(crate) fn decided(
     samples: usize,
     make: impl Fn(usize) -> Option<OptimalGait>,
 ) -> Option<OptimalGait> {
-    /// How often they are doubled.
+    /// Largest number of doublings.
     const FINEST: u32 = 4;
     let is_decided = |gait: &OptimalGait| {
         let without = [Condition::NoAscentWithoutSymmetry];
@@ -237,7 +237,7 @@ pub(crate) fn decided(
     finer.find(is_decided).or(Some(first))
 }
 
-/// How far two polynomials through the samples of a cycle of most efficiency differ in its slopes, over what [`certify`] lets them.
+/// Largest difference of the slopes of degree eight and six along an efficiency cycle, over the tolerance of [`certify`].
 pub(crate) fn slopes_open(cycle: &Cycle) -> f64 {
     let file = cycle.file(Bounds::default());
     let (grid, shapes) = Grid::new(&file, &grid::told_by_arcs(&file));
@@ -247,7 +247,7 @@ pub(crate) fn slopes_open(cycle: &Cycle) -> f64 {
     apart.fold(0.0, f64::max) / Condition::SlopesKnown.tolerance()
 }
 
-/// What the sampling may leave open.
+/// Checks of the uncertainty due to the sampling.
 fn sampling(objective: Objective, open: Openness) -> [Check; 2] {
     let coarsest = if objective == Objective::Efficiency {
         Condition::SlopesKnown.tolerance()
@@ -261,7 +261,7 @@ fn sampling(objective: Objective, open: Openness) -> [Check; 2] {
     .map(|check| check.seen_by(SeenBy::Spacing))
 }
 
-/// As [`certify`] of a counter-clockwise gait, with its curve and that one's displacement.
+/// [`certify`] for a counter-clockwise gait, with its curve and its displacement.
 fn certify_turned(
     (model, swimmer, objective, bounds): (&Model<f64>, &Swimmer<f64>, Objective, &Bounds),
     gait: &GaitFile,

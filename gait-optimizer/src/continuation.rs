@@ -1,10 +1,10 @@
-//! An optimum followed as a parameter changes: the largest angle, χ, the sphere, or the ratio of the links.
+//! Continuation (homotopy) of an optimum in a parameter: the largest angle, χ, the sphere, or the ratio of the links.
 //!
-//! Each step starts from the last gait and is halved where the next one lies too far off, so that no other branch is taken
-//! for this one. What happens on the way is reported with its place: arcs that come and go, folds, branches that meet or
-//! overtake each other, optima that are none any more.
+//! Each step starts from the last gait and is halved if the next one is too far away, so that another branch is not taken for
+//! this one. Events are reported with the parameter value: arcs that appear or vanish, folds, branches that meet or overtake each
+//! other, extremals that cease to be optima.
 //!
-//! | module | what lives there |
+//! | module | contents |
 //! |---|---|
 //! | `parameter` | what changes |
 //! | `follow` | step control, and the search for the places of events |
@@ -38,7 +38,7 @@ pub use error::ContinuationError;
 use follow::{Family, Track};
 pub use parameter::Parameter;
 
-/// Where a branch begins.
+/// Start of a branch.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Start {
     /// The small or large efficiency gait at the first value.
@@ -55,7 +55,7 @@ pub enum Start {
     Gait(Box<OptimalGait>),
 }
 
-/// What to follow, and how far.
+/// Inputs of a continuation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContinuationProblem {
     /// The swimmer; the parameter's own value in it does not matter.
@@ -64,7 +64,7 @@ pub struct ContinuationProblem {
     pub objective: Objective,
     /// The bounds; the largest angle does not matter where it is the parameter.
     pub bounds: Bounds,
-    /// What changes.
+    /// Parameter that changes.
     pub parameter: Parameter,
     /// Its first value (rad, metres or none).
     pub from: f64,
@@ -108,7 +108,7 @@ impl ContinuationProblem {
 /// A gait on the way.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Point {
-    /// Which of the starts it came from.
+    /// Index of the start of this branch.
     pub branch: usize,
     /// The parameter.
     pub value: f64,
@@ -121,18 +121,18 @@ pub struct Point {
 /// Something that happened on the way.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Event {
-    /// Which of the starts it happened to.
+    /// Index of the start of the branch with this event.
     pub branch: usize,
     /// The parameter's value.
     pub value: f64,
     /// The value is as sure as this, either way.
     pub within: f64,
-    /// What happened.
+    /// Kind and data of the event.
     #[serde(flatten)]
     pub kind: EventKind,
 }
 
-/// What can happen.
+/// Kinds of event along a branch.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum EventKind {
@@ -169,8 +169,8 @@ pub enum EventKind {
         #[serde(rename = "other_branch")]
         by: usize,
     },
-    /// From here on it is an optimum only among gaits with its symmetries (`alone`), or it is one among all closed curves again.
-    /// A mesh tells that, from below: it may lie a little earlier.
+    /// From here on it is an optimum only among gaits with its symmetries (`alone`), or again one among all closed curves. The
+    /// test uses a finite mesh and may detect the loss late.
     Symmetry {
         /// Only among those.
         #[serde(rename = "optimal_among_symmetric_alone")]
@@ -184,7 +184,7 @@ pub enum EventKind {
     },
     /// No gait is found beyond.
     Ended {
-        /// As for a jump.
+        /// Exponent, as for a jump.
         #[serde(skip_serializing_if = "Option::is_none")]
         exponent: Option<f64>,
         /// Why, as far as is known.
@@ -221,7 +221,7 @@ impl Serialize for Fold {
 /// The extremal that a branch meets in a fold: its Jacobian has the other orientation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct OtherSide {
-    /// Where it was found.
+    /// Parameter value of the fold.
     pub value: f64,
     /// Its efficiency.
     pub efficiency: f64,
@@ -321,7 +321,7 @@ fn all<F: Family>(
     Ok(found)
 }
 
-/// What is left of the equations that a gait on the way was solved from.
+/// Largest residual among the conditions that a gait of the branch is solved from.
 fn residual(certificate: &Certificate) -> f64 {
     let residuals = [Condition::ShootingResidual, Condition::FinalLambda4];
     let mut told = residuals.into_iter().filter_map(|of| certificate.value(of));

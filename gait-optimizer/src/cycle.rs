@@ -9,7 +9,7 @@ use swimmer_model::{InvalidSamples, Model, Stroke, Tolerance, crossing_share, sw
 /// One arc of a gait.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Arc {
-    /// What it runs along.
+    /// Kind of arc.
     pub kind: ArcKind,
     /// Joint angles where it starts \[rad\].
     pub from: [f64; 2],
@@ -63,7 +63,7 @@ impl Cycle {
         self.phi.get(..=end).unwrap_or(&self.phi)
     }
 
-    /// The cycle of servos that turn so many times what they are told.
+    /// The cycle of servos that turn by `gain` times the commanded angle.
     pub(crate) fn turned(&self, gain: f64) -> Self {
         Self {
             phi: self.phi.iter().map(|phi| phi * gain).collect(),
@@ -71,7 +71,7 @@ impl Cycle {
         }
     }
 
-    /// As a file that tells no objective and no swimmer.
+    /// Gait file without objective and swimmer.
     pub(crate) fn file(&self, bounds: Bounds) -> GaitFile {
         GaitFile {
             bounds,
@@ -83,7 +83,7 @@ impl Cycle {
         }
     }
 
-    /// The arcs with their joint angles; where the cycle is symmetric, those of its first quarter tell all.
+    /// Arcs with their joint angles; for a symmetric cycle, those of the first quarter only.
     pub(crate) fn arcs(&self, symmetric: bool) -> Vec<Arc> {
         let until = if symmetric { 0.25 } else { 1.0 };
         let at = |u: f64, close: f64| {
@@ -108,7 +108,8 @@ impl Cycle {
         AnyGait::from_file(&self.file(Bounds::default()))
     }
 
-    /// One cycle swum by the model, which shares no code with the arcs; none where the samples make no gait.
+    /// Stroke of one cycle, integrated by the model, which shares no code with the arcs. Returns `None` if the samples make no
+    /// gait.
     pub(crate) fn swum(&self, model: &Model<f64>) -> Option<Stroke<f64>> {
         let gait = self.gait().ok()?;
         Some(swim(model, &gait, &Tolerance::new(1e-12)))

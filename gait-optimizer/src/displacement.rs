@@ -24,7 +24,7 @@ use crate::momentum::pose;
 use crate::optimal_gait::OptimalGait;
 use crate::problem::{GaitClass, InvalidProblem, validated};
 
-/// Which way a counter-clockwise gait shall carry the swimmer.
+/// Direction in which a counter-clockwise gait shall move the swimmer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Heading {
     /// X > 0, along the heading at φ₁ = φ₂ > 0.

@@ -5,11 +5,11 @@
 //! [`efficiency()`] finds the gaits of most Lighthill efficiency (section V), small and large.
 //! Each result is an [`OptimalGait`] and carries its [`Certificate`]: the necessary conditions, each with its number.
 //!
-//! How the rooms of this crate lie:
+//! Modules:
 //!
-//! | module | what lives there |
+//! | module | contents |
 //! |---|---|
-//! | `problem` | what every problem has to be before anything is searched |
+//! | `problem` | checks of the inputs, common to all searches |
 //! | `immobile` | swimmers that no gait moves, refused before anything is searched |
 //! | `optimal_gait` | what every search returns: a gait with its figures and its certificate |
 //! | `displacement` | the problem, the search for the quarter gait, the result |
@@ -31,12 +31,12 @@
 //! | `speed` | the fastest gait of servos with a limit on their rates |
 //! | `turning` | the simple closed gait that turns most: round a region of the curvature |
 //! | `robust` | gaits for a swimmer that is not known exactly: best worst case, best mean |
-//! | `member` | one swimmer of an uncertain family, with what its servos turn over what they are told |
+//! | `member` | one swimmer of an uncertain family, with the gain of its servos: actual over commanded angle |
 //! | `certificate` | every condition with its key and tolerance, and checks |
-//! | `certify` | conditions asked of any closed curve, from its samples alone: the certificate of turning, sideways and atlas gaits |
-//! | [`closed_forms`] | formulas of the paper's appendix, mended |
+//! | `certify` | conditions of any closed curve, from its samples alone: the certificate of turning, sideways and atlas gaits |
+//! | [`closed_forms`] | formulas of the paper's appendix, with its misprints corrected |
 //! | `simple_shapes` | circles and squares over their amplitude |
-//! | `numerics` | halving, roots, damped steps, the worst of some numbers |
+//! | `numerics` | bisection, root search, line search (damped steps), reductions that propagate NaN |
 //! | `parallel` | jobs over threads, with somebody who watches |
 //! | `runge_kutta` | the integrator: order 8, steps that end where an event is |
 //!

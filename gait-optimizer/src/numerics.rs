@@ -1,5 +1,5 @@
-//! Where something changes along a line: halving, roots by regula falsi and by Newton's method, steps that are damped. And the worst
-//! of some numbers.
+//! Scalar numerics: bisection, roots by regula falsi and Newton's method, damped steps (line search), and reductions that
+//! propagate NaN.
 
 /// The larger, and NaN rather than either.
 pub(crate) fn worse(a: f64, b: f64) -> f64 {
@@ -33,8 +33,8 @@ pub(crate) fn halved(
     [low, high]
 }
 
-/// A root between two places with values of different sign: regula falsi (Illinois), now and then a halving, until a value is below
-/// `small`. None where a value is not known, or at a jump.
+/// A root between two places with values of different sign: regula falsi (Illinois) with occasional bisection, until a value is
+/// below `small`. Returns `None` if a value is unknown, or at a jump.
 pub(crate) fn root(
     [mut a, mut b]: [(f64, f64); 2],
     small: f64,
@@ -61,10 +61,10 @@ pub(crate) fn root(
     None
 }
 
-/// Where a value that is above zero at the start of a way falls through zero: the point there and the length up to it. Newton's
-/// method from a `guess`, kept between the start and the `longest` length, until its next step would be shorter than `tolerance`.
+/// First zero of a value that is positive at the start of a path: the point there and the path length up to it. Newton's method
+/// from a `guess`, kept between the start and the `longest` length, until its next step would be shorter than `tolerance`.
 ///
-/// `at` follows the way over a length; `value` is the value with its slope over the length. None where `at` fails.
+/// `at` follows the path over a length; `value` is the value with its slope over the length. Returns `None` if `at` fails.
 pub(crate) fn locate<P>(
     [guess, longest]: [f64; 2],
     tolerance: f64,
@@ -90,7 +90,7 @@ pub(crate) fn locate<P>(
         }
         length = next;
         there = at(length)?;
-        // What is left after a step of Newton's is about its square.
+        // The error after a Newton step is about the square of the step.
         if within && SQUARED * step * step < tolerance {
             break;
         }
@@ -98,10 +98,10 @@ pub(crate) fn locate<P>(
     Some((there, length))
 }
 
-/// How much larger than its square what a step of Newton's leaves is allowed to be.
+/// Ratio allowed between the error after a Newton step and the square of the step.
 const SQUARED: f64 = 100.0;
 
-/// Where a value lies among places that grow: the place before it, and its share of the way to the next one.
+/// Position of a value among increasing places: the index of the place before it, and its fraction of the way to the next one.
 pub(crate) fn between(places: &[f64], at: f64) -> (usize, f64) {
     let last = places.len().saturating_sub(1).max(1);
     let after = places.partition_point(|&place| place <= at).clamp(1, last);

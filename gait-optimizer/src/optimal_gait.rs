@@ -1,4 +1,4 @@
-//! What an optimisation returns: the gait, its numbers and its proof.
+//! Result of an optimisation: the gait, its figures and its certificate.
 
 use nalgebra::Vector2;
 use swimmer_files::{AnyGait, Bounds, GaitArc, GaitFile, Objective, SwimmerHash};
@@ -15,7 +15,8 @@ pub struct EfficiencyFigures {
     pub residual: f64,
     /// (max − min)/mean of the power along the extremal.
     pub power_variation: f64,
-    /// What led to the guess that was shot from: [`Method::word`](crate::Method::word), or the name of the method that a [`Direct`](crate::Direct) gait is from.
+    /// Origin of the initial guess: [`Method::word`](crate::Method::word), or the method's name for a [`Direct`](crate::Direct)
+    /// gait.
     pub method: &'static str,
     /// ξ of the curve that was shot from, where it is the result of a direct method of its own.
     pub direct_efficiency: Option<f64>,
@@ -24,9 +25,9 @@ pub struct EfficiencyFigures {
 /// An optimal gait with its certificate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OptimalGait {
-    /// What it is optimal for.
+    /// Objective that it is optimal for.
     pub objective: Objective,
-    /// Whose gait it is.
+    /// Swimmer that it is computed for.
     pub swimmer: Swimmer<f64>,
     /// The bounds it obeys.
     pub bounds: Bounds,
@@ -42,7 +43,7 @@ pub struct OptimalGait {
     pub rotation: f64,
     /// Lighthill's efficiency ξ at constant power.
     pub efficiency: f64,
-    /// Whether the gait has the paper's two symmetries, so that a quarter of it tells the whole.
+    /// `true` if the gait has the paper's two symmetries, so that a quarter determines it.
     pub symmetric: bool,
     /// φ₁ at the first sample \[rad\]; φ₁ = φ₂ there if the gait is symmetric.
     pub start_angle: f64,
@@ -55,10 +56,10 @@ pub struct OptimalGait {
     pub links_cross: f64,
     /// The necessary conditions, each with its number.
     pub certificate: Certificate,
-    /// What only efficiency gaits have.
+    /// Figures of efficiency gaits.
     pub efficiency_figures: Option<EfficiencyFigures>,
-    /// How many extremals the search found in its class, this one included, of which it returned the best that is certified;
-    /// none where a solver follows a single one.
+    /// Number of extremals that the search found in its class, this one included; it returned the best certified one. `None` for
+    /// a solver that follows a single extremal.
     pub extremals: Option<usize>,
     pub(crate) cycle: Cycle,
     /// Net displacement over L as the model swims the samples.
@@ -66,7 +67,7 @@ pub struct OptimalGait {
 }
 
 impl OptimalGait {
-    /// A gait with the numbers that follow from its cycle, swum by the model of the swimmer with L = 1; no condition is asked yet.
+    /// A gait with the figures of its cycle, integrated by the model of the swimmer with L = 1; its certificate is still empty.
     pub(crate) fn of_cycle(
         (objective, swimmer, bounds): (Objective, &Swimmer<f64>, &Bounds),
         symmetric: bool,
@@ -100,8 +101,8 @@ impl OptimalGait {
         }
     }
 
-    /// Of the displacement against the cycle's mean heading, timed as the samples are \[rad\], in (−π, π\]: the same from whatever
-    /// first sample. None where the gait cannot be swum.
+    /// Angle of the displacement against the cycle's mean heading, timed as the samples are \[rad\], in (−π, π\]: independent of
+    /// the first sample. Returns `None` if the gait cannot be integrated.
     pub fn heading(&self) -> Option<f64> {
         const LOOKS: usize = 2048;
         let model = Model::new(&self.swimmer.of_unit_length()).ok()?;
@@ -153,7 +154,7 @@ impl OptimalGait {
         self
     }
 
-    /// Whether the curve runs clockwise in the plane of (φ₁, φ₂).
+    /// `true` if the curve runs clockwise in the plane of (φ₁, φ₂).
     pub fn is_clockwise(&self) -> bool {
         double_area(self.phi()) < 0.0
     }
@@ -195,7 +196,7 @@ impl OptimalGait {
         self.cycle.gait()
     }
 
-    /// What a gait file holds of it; `swimmer_name` is for people.
+    /// Gait file of this gait; `swimmer_name` is a label for people.
     pub fn gait_file(&self, swimmer_name: &str) -> GaitFile {
         GaitFile {
             objective: self.objective,

@@ -1,12 +1,12 @@
-//! Many independent jobs on as many threads as asked for, with the same result on any number of them.
+//! Independent jobs on several threads, with the same result for any number of threads.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Is told the share of the work that is done, 0 to 1, from any thread; it may begin again from 0.
+/// Callback for the completed fraction of the work, 0 to 1, called from any thread; it may start again from 0.
 pub type Watch<'a> = &'a (dyn Fn(f64) + Sync);
 
-/// Runs `job` for 0 … count − 1; each thread has its own room, made by `room`. The results are in order. `watch` is told what
-/// share of the jobs is done.
+/// Runs `job` for 0 … count − 1; each thread has its own workspace, made by `room`. The results are in order. `watch` receives
+/// the completed fraction of the jobs.
 pub(crate) fn in_parallel<R, T: Send>(
     count: usize,
     threads: usize,

@@ -29,7 +29,7 @@ pub enum InvalidProblem {
         name: &'static str,
         /// Its value \[rad\].
         value: f64,
-        /// What is wrong.
+        /// Violated requirement.
         problem: &'static str,
     },
     /// A clearance that no shape can have.
@@ -54,7 +54,7 @@ pub enum InvalidProblem {
     },
 }
 
-/// The class of gaits that a problem asks for.
+/// Class of gaits that a problem is restricted to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum GaitClass {
     /// Made of four like quarters, which may have bounds of their own.

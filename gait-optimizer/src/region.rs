@@ -1,5 +1,5 @@
-//! Where a gait may go: straight bounds of the joint angles in the (φ₁, φ₂) plane, and the curved one that keeps the side
-//! links apart.
+//! Admissible region of shapes: straight bounds of the joint angles in the (φ₁, φ₂) plane, and the curved bound that keeps the
+//! side links apart.
 //!
 //! A quarter runs from φ₁ = φ₂ > 0 to φ₁ = −φ₂, φ₂ > 0, so a bound on |φᵢ| from below binds its leading angle φ₂, and the
 //! sector adds the two diagonals; those three only make sense for quarters. All others hold for full cycles as well.
@@ -23,7 +23,7 @@ pub struct Edge {
     pub normal: Vector2<f64>,
     /// Distance from the straight shape \[rad\].
     pub offset: f64,
-    /// What an arc along it is called.
+    /// Kind of an arc along it.
     pub kind: ArcKind,
 }
 
@@ -36,19 +36,19 @@ pub enum Bound {
     Clearance(Clearance),
 }
 
-/// Where all bounds hold. Convex but for the clearance.
+/// Intersection of all bounds. Convex but for the clearance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Region {
     edges: Vec<Edge>,
     clearance: Option<Clearance>,
-    /// Where the tips meet at φ₁, φ₂ > 0; the other corner is its negative.
+    /// Shape at which the tips meet, φ₁, φ₂ > 0; the other corner is its negative.
     corner: Option<Vector2<f64>>,
     /// Beyond this |Φ| the search does not look \[rad\]; farther than any corner where a bound binds.
     pub(crate) horizon: f64,
 }
 
 impl Edge {
-    /// How far inside a shape is \[rad\]; negative outside.
+    /// Distance of a shape from the edge \[rad\], positive inside.
     pub(crate) fn margin(&self, phi: &Vector2<f64>) -> f64 {
         self.offset - self.normal.dot(phi)
     }
@@ -65,7 +65,7 @@ impl Edge {
 }
 
 impl Bound {
-    /// What an arc along it is called.
+    /// Kind of an arc along it.
     pub fn kind(&self) -> ArcKind {
         self.edge().map_or(ArcKind::Clearance, |edge| edge.kind)
     }
@@ -78,7 +78,7 @@ impl Bound {
         }
     }
 
-    /// Which piece of the bound decides at a shape; none for an edge, which has one piece.
+    /// Active piece of the bound at a shape. Returns `None` for an edge, which has one piece.
     pub(crate) fn piece(&self, phi: &Vector2<f64>) -> Option<Piece> {
         match self {
             Self::Straight(_) => None,
@@ -94,7 +94,7 @@ impl Bound {
         }
     }
 
-    /// How far inside a shape is; negative outside. In rad for an edge, a length over L for the clearance.
+    /// Margin of a shape, positive inside. In rad for an edge, a length over L for the clearance.
     pub fn margin(&self, phi: &Vector2<f64>) -> f64 {
         match self {
             Self::Straight(edge) => edge.margin(phi),
@@ -270,12 +270,12 @@ impl Region {
         Some(bound.and(self.corner)? * side)
     }
 
-    /// Whether the sector's sides, φ₁ = φ₂ and φ₁ = −φ₂, are bounds.
+    /// `true` if the sector's sides, φ₁ = φ₂ and φ₁ = −φ₂, are bounds.
     pub(crate) fn has_diagonals(&self) -> bool {
         self.edges.iter().any(|edge| edge.kind == ArcKind::Diagonal)
     }
 
-    /// Whether some bounds are told of a quarter, so that they mean something for gaits with the paper's symmetries only.
+    /// `true` if some bounds are defined on a quarter, so that they apply only to gaits with the paper's symmetries.
     pub(crate) fn is_of_quarters(&self) -> bool {
         let of_quarter = |edge: &Edge| matches!(edge.kind, ArcKind::Lower | ArcKind::Diagonal);
         self.edges.iter().any(of_quarter)

@@ -1,5 +1,5 @@
-//! Gaits for a swimmer that is not known exactly: the best worst case, or the best mean, over what a calibration leaves open
-//! of r_s and χ and what is left open of the servos' gain, beside what the nominal optimum would bring there.
+//! Robust gaits: the best worst case, or the best mean, over the uncertainty of r_s and χ from a calibration and of the servos'
+//! gain, compared with the nominal optimum.
 //!
 //! **Conditions.** For the mean with weights wₖ, Σ wₖ fₖ is stationary: on free arcs of a displacement gait the weighted
 //! height h̄ = Σ wₖ μₖ·Fₖ vanishes and along bounds h̄ ≥ 0, each member with its own pose and body momentum (an ensemble
@@ -9,14 +9,14 @@
 //!
 //! **Families.** Displacement, free or with an upper bound: gaits with the arcs of the nominal optimum, any shape (spectral
 //! collocation of h̄ = 0). Efficiency: doubly symmetric Fourier gaits of order N, one timing for all members. Speed: chains of
-//! arcs, begun at those of the fastest gait and mended where they no longer fit. No member may rotate: with a net rotation the
-//! displacement of a cycle depends on where the cycle begins. Where both side links are alike nobody rotates along a loop that is
-//! its own image in φ₁ = −φ₂ or has the paper's symmetries, as the fastest gaits as a rule are; others are refused.
+//! arcs, started at those of the fastest gait and corrected by an active-set update. No member may rotate: with a net rotation
+//! the displacement of a cycle depends on its first sample. With equal side links no member rotates along a loop that is its own
+//! image in φ₁ = −φ₂ or has the paper's symmetries, which the fastest gaits usually have; others are refused.
 //!
-//! **Gain.** A servo with gain g turns to g times what it is told, about the straight swimmer, as in a calibration. Bounds on angles
-//! and rates are about what is told: there the robot limits them.
+//! **Gain.** A servo with gain g turns to g times the commanded angle, about the straight swimmer, as in a calibration. Bounds on
+//! angles and rates apply to the commanded angles, which the robot limits.
 //!
-//! Values are signed as the objective asks: a gait for X < 0 is best where X is least.
+//! Values have the sign of the objective: for X < 0 the best gait has the least X.
 
 #![allow(
     clippy::doc_markdown,
@@ -57,7 +57,7 @@ pub use speed::{RobustSpeed, robust_speed};
 pub use uncertainty::Uncertainty;
 use worst::find;
 
-/// What a robust design maximises.
+/// Statistic that a robust design maximises.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Over {
     /// The worst case over box or ellipse.
@@ -66,12 +66,12 @@ pub enum Over {
     Mean,
 }
 
-/// What a gait brings over the uncertainty: X/L per cycle, signed, ξ as timed, or |d|/(L T) \[1/s\].
+/// Values of a gait over the uncertainty: X/L per cycle, signed, ξ as timed, or |d|/(L T) \[1/s\].
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Values {
     /// For the estimates themselves.
     pub nominal: f64,
-    /// In the worst case: the least gain in the direction asked for.
+    /// Worst case: the least value in the required direction.
     pub worst: f64,
     /// In the mean.
     pub mean: f64,
@@ -94,27 +94,27 @@ pub struct Holder {
     pub sphere_radius: f64,
     /// χ.
     pub chi: f64,
-    /// What its servos turn over what they are told.
+    /// Gain of its servos: actual over commanded angle.
     pub gain: f64,
     /// λ, its share of the first-order condition.
     pub multiplier: f64,
 }
 
-/// What robustness costs and brings.
+/// Cost and benefit of robustness.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Robustness {
-    /// What was maximised.
+    /// Statistic that was maximised.
     pub over: Over,
-    /// What the gait brings.
+    /// Values of the robust gait.
     pub values: Values,
-    /// What the nominal optimum of the same family brings.
+    /// Values of the nominal optimum of the same family.
     pub nominal: Values,
     /// The swimmers that hold the worst case; none for a mean.
     pub held_by: Vec<Holder>,
-    /// How many swimmers the search for the worst case begins with, and how many the mean is taken of.
+    /// Number of swimmers that the search for the worst case starts with, and number of swimmers in the mean.
     pub members: (usize, usize),
-    /// Whether the gait lies on another branch of optima than the nominal one, to which it does not lead back: it is better for
-    /// the estimates themselves, or near it another gait is best for them.
+    /// `true` if the gait lies on another branch of optima than the nominal one and does not lead back to it: it is better for
+    /// the estimates themselves, or another gait near it is best for them.
     pub off_branch: bool,
     /// Share of the cycle in which links cross, at most: of the gait over all gains, and of the nominal optimum with exact servos.
     pub links_cross: [f64; 2],
@@ -125,7 +125,7 @@ pub struct Robustness {
 pub struct RobustGait {
     /// The gait; its numbers are those of the nominal swimmer.
     pub gait: OptimalGait,
-    /// What it costs and brings.
+    /// Cost and benefit of robustness.
     pub robustness: Robustness,
 }
 
@@ -177,7 +177,7 @@ impl Robustness {
 /// forwards.
 ///
 /// # Errors
-/// [`RobustError`]: why there is none.
+/// [`RobustError`] if no robust gait is found.
 ///
 /// ```
 /// use gait_optimizer::{DisplacementProblem, Over, Uncertainty, robust_displacement};
@@ -263,7 +263,7 @@ fn robust_of_sense(
 /// beyond them is refused.
 ///
 /// # Errors
-/// [`RobustError`]: why there is none.
+/// [`RobustError`] if no robust gait is found.
 ///
 /// ```
 /// use gait_optimizer::{Bounds, Branch, Over, Uncertainty, robust_efficiency};
@@ -314,7 +314,7 @@ pub fn robust_efficiency(
 /// Highest order of a Fourier gait.
 const MOST_ORDER: usize = 12;
 
-/// A gait found, with what its robustness costs beside the nominal `optimum`; an error where its certificate fails.
+/// Certifies a gait and compares it with the nominal `optimum`. Fails if its certificate does not pass.
 fn certified<F: Family>(
     ensemble: &Ensemble<'_>,
     family: &F,
@@ -330,7 +330,7 @@ fn certified<F: Family>(
     })?;
     let mut checks = family.conditions(&found.point, &found.weighted);
     checks.extend(certificate::of_curve(&cycle, bounds, &swimmer.links));
-    // What gaits with the paper's symmetries bring is along the heading, all of it.
+    // Gaits with the paper's symmetries move along the heading only.
     checks.push(Condition::NoLateral.check(stroke.displacement.y.abs()));
     checks.push(Condition::NoRotation.check(stroke.rotation.abs()));
     let certificate = Certificate::new(checks);

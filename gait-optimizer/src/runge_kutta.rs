@@ -71,7 +71,7 @@ pub(crate) struct Accepted<const N: usize> {
 /// Steps below this are given up: the right-hand side is not smooth there.
 const SHORTEST: f64 = 1e-10;
 
-/// One step from `start` of at most `length`, shortened until its error is small enough; none where that fails.
+/// One step from `start` of at most `length`, shortened until its error is small enough. Returns `None` if that fails.
 pub(crate) fn controlled_step<const N: usize>(
     system: &impl System<N>,
     start: &Point<N>,
@@ -113,7 +113,7 @@ pub(crate) fn exact_step<const N: usize>(
     trial(system, start, length, 1.0).0
 }
 
-/// Integrates over exactly `length`; none where the steps become too short.
+/// Integrates over exactly `length`. Returns `None` if the steps become too short.
 pub(crate) fn advance<const N: usize>(
     system: &impl System<N>,
     start: Point<N>,

@@ -29,7 +29,7 @@ use crate::problem::{GaitClass, validated};
 use crate::region::Region;
 use square::turned;
 
-/// What to steer, and how.
+/// Inputs of the sideways search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SidewaysProblem {
     /// The swimmer.
@@ -117,7 +117,7 @@ pub fn sideways(problem: &SidewaysProblem, watch: Watch<'_>) -> Result<Sideways,
     }
 }
 
-/// The gait of a swimmer that was turned end for end, as the swimmer itself runs it; none where it is not certified.
+/// The gait of a swimmer that was turned end for end, as the swimmer itself runs it. Returns `None` if it is not certified.
 fn from_the_other_end(problem: &SidewaysProblem, found: &Sideways) -> Option<Sideways> {
     let model = Model::new(&problem.swimmer.of_unit_length()).ok()?;
     // Backwards, so that it stays as far across to the same side.
@@ -130,14 +130,14 @@ fn from_the_other_end(problem: &SidewaysProblem, found: &Sideways) -> Option<Sid
     })
 }
 
-/// A cycle as a gait, not yet certified; none where it cannot be swum.
+/// A cycle as a gait, not yet certified. Returns `None` if it cannot be integrated.
 fn gait((problem, model): (&SidewaysProblem, &Model<f64>), cycle: Cycle) -> Option<OptimalGait> {
     let stroke = cycle.swum(model)?;
     let of = (Objective::Sideways, &problem.swimmer, &problem.bounds);
     Some(OptimalGait::of_cycle(of, false, cycle, &stroke))
 }
 
-/// As [`sideways`], from one end, with as many samples as the certificates ask for.
+/// [`sideways`] from one end, with as many samples as the certificates need.
 fn from_this_end(problem: &SidewaysProblem, watch: Watch<'_>) -> Result<Sideways, SidewaysError> {
     let (mut best, mut open) = sampled_as_asked(problem, watch)?;
     let mut finer = *problem;
@@ -150,7 +150,7 @@ fn from_this_end(problem: &SidewaysProblem, watch: Watch<'_>) -> Result<Sideways
     best
 }
 
-/// Most samples, as a multiple of those asked for.
+/// Largest number of samples, as a multiple of the requested number.
 const FINEST: usize = 16;
 
 /// The best that is certified, and whether more samples might have a better one certified.

@@ -1,11 +1,11 @@
 //! The fastest gait: most net displacement per unit of time with no net rotation, when servos turn no faster than they can.
 //!
 //! With a price on time the problem is well-posed over all closed curves. Extremals are chains of three kinds of arcs: *extreme*
-//! (both servos at full rate: straight in the plane of joint angles), *singular* (h = 0, one servo at full rate), and along a
-//! bound. The search is global and needs no guess: from many starts an interior-point method finds a rough polygon near each;
-//! those that may be the fastest it finishes ([`interior`], [`selection`]). What pushes against their sides tells the arcs
-//! ([`structure`]), and Newton's method brings them to rounding ([`polish`]). The certificate is worked out from the finished
-//! curve alone ([`certificate`]).
+//! (bang-bang: both servos at full rate, straight in the plane of joint angles), *singular* (h = 0, one servo at full rate), and
+//! along a bound. The search is global and needs no guess: from many starts a primal–dual interior-point method finds a rough
+//! polygon near each; those that may be the fastest are refined ([`interior`], [`selection`]). The active constraints of their
+//! sides determine the arcs ([`structure`]), and Newton's method solves for them to rounding ([`polish`]). The certificate is
+//! computed from the finished curve alone ([`certificate`]).
 
 mod arc;
 mod candidate;

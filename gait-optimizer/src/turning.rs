@@ -39,10 +39,10 @@ use crate::problem::{GaitClass, validated};
 use crate::region::Region;
 use walk::{Domain, Piece, close_up};
 
-/// Whose gait, and within what.
+/// Inputs of the turning search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TurningProblem {
-    /// Whose gait. Side links may differ.
+    /// Swimmer. Side links may differ.
     pub swimmer: Swimmer<f64>,
     /// An upper bound of the angles, and links kept from crossing; lower bounds and the sector belong to quarter gaits.
     pub bounds: Bounds,
@@ -79,7 +79,7 @@ const STEPS: f64 = 240.0;
 pub fn turning(problem: &TurningProblem) -> Result<Turning, TurningError> {
     let model = validated(&problem.swimmer, &problem.bounds, GaitClass::Closed)?;
     let mut found = at_resolution(problem, &model, 1.0)?;
-    // As many samples as the certificate asks for, where some number of them will do.
+    // As many samples as the certificate needs, up to a limit.
     for times in FINER {
         if found.gait.certificate.pass() {
             break;
@@ -98,10 +98,10 @@ pub fn turning(problem: &TurningProblem) -> Result<Turning, TurningError> {
     })
 }
 
-/// How many times as close samples may lie.
+/// Factors by which the sampling is refined.
 const FINER: [f64; 3] = [2.0, 4.0, 8.0];
 
-/// As [`turning`], with so many times as many samples, whether it is certified or not.
+/// [`turning`] with `times` as many samples, certified or not.
 fn at_resolution(
     problem: &TurningProblem,
     model: &Model<f64>,
@@ -189,7 +189,7 @@ fn begun_on_diagonal(round: &[Piece], domain: Domain<'_>) -> Vec<Piece> {
     pieces
 }
 
-/// The pieces' points at constant power; none where they make no gait.
+/// The pieces' points at constant power. Returns `None` if they make no gait.
 fn sampled(pieces: &[Piece], model: &Model<f64>) -> Option<Samples> {
     let mut samples = Samples::default();
     for piece in pieces {
@@ -214,7 +214,7 @@ fn sampled(pieces: &[Piece], model: &Model<f64>) -> Option<Samples> {
     Some(samples)
 }
 
-/// Whether the last piece of a closed curve goes on into the first, straight on.
+/// `true` if the last piece of a closed curve continues into the first without a corner.
 fn begins_smoothly(pieces: &[Piece]) -> bool {
     let Some((first, last)) = pieces.first().zip(pieces.last()) else {
         return false;
@@ -243,7 +243,7 @@ fn power_lengths(gait: &AnyGait, u: &[f64], model: &Model<f64>) -> Vec<f64> {
     lengths
 }
 
-/// A loop round a region, not yet certified; none where the pieces make no gait.
+/// A loop around a region, not yet certified. Returns `None` if the pieces make no gait.
 fn gait(
     of: (Objective, &Swimmer<f64>, &Bounds),
     pieces: &[Piece],

@@ -113,7 +113,7 @@ fn series(coefficients: &DMatrix<f64>) -> Series {
     }
 }
 
-/// u of the outermost crossing of φ₁ = φ₂ > 0; 0 if there is none.
+/// u of the outermost crossing of φ₁ = φ₂ > 0; 0 without a crossing.
 fn home(curve: &Series) -> f64 {
     const LOOKS: u32 = 720;
     let place = |k: u32| f64::from(k) / f64::from(LOOKS);

@@ -51,7 +51,7 @@ fn without_symmetry_the_robot_swims_more_efficiently_within_its_bounds() {
     assert!(stroke.rotation.abs() < 1e-8);
 }
 
-/// What the quarter solver certifies is in the atlas too, even where the polish of its coarse curve fails.
+/// Gaits that the quarter solver certifies are in the atlas too, even if the polish of their coarse curve fails.
 #[test]
 fn no_certified_gait_is_lost() {
     let bounds = Bounds::within(3.5);
@@ -90,8 +90,8 @@ fn swimmer(middle: f64, chi: f64) -> Swimmer<f64> {
     }
 }
 
-/// Best among gaits with the paper's symmetries, and a saddle among all closed curves: it has no place in an atlas. That a push
-/// out of the symmetry gains is told by the adaptive integrator, too.
+/// A gait that is best among gaits with the paper's symmetries and a saddle among all closed curves is not listed. The adaptive
+/// integrator confirms that a push out of the symmetry gains.
 #[test]
 fn what_is_best_of_its_symmetry_only_is_not_listed() {
     let bounds = Bounds::within(2.895);
@@ -137,7 +137,7 @@ fn what_is_best_of_its_symmetry_only_is_not_listed() {
     assert!(!found.optima.is_empty() && !found.optima.iter().any(listed));
 }
 
-/// Where the corners of a gait lie among these u.
+/// Indices of the corners of a gait among these u.
 fn corners(gait: &OptimalGait, among: &[f64]) -> Vec<usize> {
     let place = |corner: &f64| among.iter().position(|u| (u - corner).abs() < 1e-12);
     gait.corners().iter().filter_map(place).collect()

@@ -21,14 +21,14 @@ macro_rules! conditions {
                 }
             }
 
-            /// What its number is held against where nothing more is open.
+            /// Limit of its value if the samples add no uncertainty.
             pub(crate) fn tolerance(self) -> f64 {
                 match self {
                     $(Self::$name => $tolerance,)+
                 }
             }
 
-            /// Whether its number is held against the tolerance from below.
+            /// `true` if the value must be at least the tolerance instead of at most.
             pub fn is_from_below(self) -> bool {
                 match self {
                     $(Self::$name => conditions!(@ $side),)+
@@ -46,9 +46,9 @@ conditions! {
     Closed: "open_rad" <= GaitFile::CLOSURE;
     /// It turns round once.
     TurnsOnce: "turning_number_off_one" <= 1e-9;
-    /// It does not cross itself; a gait that may touch its own images is asked of a quarter.
+    /// It does not cross itself; if the gait may touch its own images, a quarter is tested.
     Simple: "self_crossings" <= 0.0;
-    /// It has the paper's two symmetries, as bounds that are told of a quarter ask.
+    /// It has the paper's two symmetries, which the bounds of a quarter require.
     PapersSymmetries: "without_the_papers_symmetries" <= 0.0;
     /// It keeps its bounds \[rad\].
     KeepsBounds: "bound_overstepped_rad" <= 1e-9;
@@ -64,8 +64,8 @@ conditions! {
     /// The same of the poses, over L and in radians.
     PosesKnown: "sampling_pose_error" <= 1e-5;
 
-    // What it brings.
-    /// What is to be large is not nothing.
+    // Gain.
+    /// The objective is clearly positive.
     Gains: "gain_least" >= 1e-6;
     /// The displacement, integrated in another way, over L.
     DisplacementSwumAgain: "displacement_swum_again" <= super::SWUM_AGAIN;
@@ -97,7 +97,8 @@ conditions! {
     HeightOnBound: "bound_multiplier_least" >= -1e-9;
     /// No other first sample has more displacement across its heading, over L.
     NoBetterStart: "other_start_better" <= 1e-8;
-    /// How many pushes of the curve gain to second order; of a gait with the paper's symmetries those that keep them.
+    /// Number of perturbations of the curve that gain to second order; for a gait with the paper's symmetries, of those that keep
+    /// them.
     NoAscent: "ascent_directions" <= 0.0;
     /// The same with pushes of any symmetry.
     NoAscentWithoutSymmetry: "ascent_directions_without_symmetry" <= 0.0;
@@ -121,9 +122,9 @@ conditions! {
     CostateBalance: "h_u" <= 1e-8;
     /// H along free arcs, over itself.
     HamiltonianConstant: "hamiltonian_variation" <= 1e-7;
-    /// What a bound pushes back with, over the largest costate.
+    /// Least multiplier of a bound, over the largest costate.
     EffortOnBound: "bound_multiplier_least" >= -1e-7;
-    /// What is left of the shooting's equations: angles in rad, momenta over |p|.
+    /// Residual of the shooting equations: angles in rad, momenta over |p|.
     ShootingResidual: "shooting_residual" <= 1e-10;
     /// p is parallel to the displacement: the sine between them.
     MomentumAlongDisplacement: "displacement_off_momentum" <= 1e-7;
@@ -143,7 +144,7 @@ conditions! {
     RobustGradient: "robust_gradient" <= 1e-8;
     /// The largest curvature of the weighted objective of a series.
     RobustCurvature: "robust_curvature" <= 0.0;
-    /// What the estimates bring, by the model's own integration, relatively.
+    /// Objective at the estimates, by the model's own integration, relative difference.
     NominalSwumAgain: "nominal_swum_again" <= 1e-8;
     /// The same of the worst case, looked for again.
     WorstSwumAgain: "worst_swum_again" <= 1e-8;
@@ -151,7 +152,7 @@ conditions! {
     MeanSwumAgain: "mean_swum_again" <= 1e-8;
     /// No swimmer that holds the worst case pulls the other way.
     WorstCaseMultiplier: "worst_case_multiplier_least" >= 0.0;
-    /// Who holds the worst case is as badly off as the worst, relatively.
+    /// Members that define the worst case have the value of the worst case, relatively.
     WorstCaseHeld: "worst_case_held_apart" <= 1e-8;
 
     // Speed. Numbers are over the speed, or a share of a switch-to-switch integral.
@@ -161,7 +162,7 @@ conditions! {
     PassesJoint: "off_the_joint_shape_rad" <= 1e-9;
     /// A servo runs at its full rate, relatively.
     FullRate: "off_full_rate" <= 1e-6;
-    /// The displacement points where it was asked to \[rad\].
+    /// Angle between displacement and the required direction \[rad\].
     Heading: "off_heading_rad" <= 1e-8;
     /// The integrals of the height between switches.
     SwitchIntegrals: "switch_to_switch_integrals" <= 1e-6;
@@ -179,12 +180,12 @@ conditions! {
     FurtherTime: "speed_of_further_time_least" >= -1e-6;
     /// No shift of the corners gains to second order.
     NoBetterCorners: "second_variation_least" >= 0.0;
-    /// It has arcs enough to be asked.
+    /// It has enough arcs for the test.
     EnoughArcs: "arcs_least" >= 3.0;
 }
 
 impl Condition {
-    /// The condition asked: this number was found. NaN fails.
+    /// Checks a value against the tolerance. NaN fails.
     pub(crate) fn check(self, value: f64) -> Check {
         self.open(value, 0.0)
     }
@@ -195,7 +196,7 @@ impl Condition {
         self.within(value, self.tolerance() + open)
     }
 
-    /// The same against the tolerance that this very gait asks for.
+    /// Checks a value against a tolerance of the caller.
     pub(crate) fn within(self, value: f64, tolerance: f64) -> Check {
         let pass = if self.is_from_below() {
             value >= tolerance
@@ -213,7 +214,7 @@ impl Condition {
     }
 }
 
-/// As in every answer.
+/// Serialises as the key of the condition.
 impl serde::Serialize for Condition {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(self.key())

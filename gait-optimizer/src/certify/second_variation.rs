@@ -1,7 +1,8 @@
-//! The second-order test that any curve can be asked: is a neighbour better?
+//! Second-order test for any closed curve: does a neighbouring curve gain?
 //!
-//! The curve is pushed along its normal by hats over knots on each of its free stretches, which end at bounds and corners. The gain's
-//! second variation in these ([`super::variation`]), where the push turns nothing, has no direction at an optimum that leads up.
+//! The curve is perturbed along its normal by hat functions over knots on each free stretch; stretches end at bounds and corners.
+//! At an optimum the second variation of the gain ([`super::variation`]), restricted to perturbations without rotation, has no
+//! ascent direction.
 
 mod mesh;
 
@@ -34,8 +35,8 @@ const PLACES: [f64; 2] = {
 };
 /// Places this close in u are the same.
 const SAME: f64 = 1e-9;
-/// Curvatures below this part of the largest are not told from zero. Where effort counts the largest is that of the narrowest push,
-/// and that of the widest the square of the knots less.
+/// Curvatures below this fraction of the largest count as zero. If effort is part of the objective, the largest curvature is that
+/// of the narrowest hat, and that of the widest is smaller by the square of the number of knots.
 const FLAT: f64 = 1e-5;
 const FLAT_OF_WIDEST: f64 = 1e-3;
 /// Rounding leaves less than this part of the form open.
@@ -44,9 +45,9 @@ const ROUNDING: f64 = 1e-9;
 /// The directions that lead up from a curve.
 #[derive(Default)]
 pub(super) struct Ascents {
-    /// How many are independent.
+    /// Number of independent ascent directions.
     pub(super) count: usize,
-    /// How many of these the samples leave open.
+    /// Number of those that the samples leave undecided.
     unsure: usize,
     /// The steepest, as a push at every node; the farthest push is 1 rad. Empty where it is not known, or none leads up.
     pub(super) steepest: Vec<Vector2<f64>>,
@@ -62,8 +63,8 @@ impl Ascents {
 }
 
 impl Subject<'_> {
-    /// How many pushes of the curve would gain, with these multipliers: those that keep the paper's symmetries, where the curve has
-    /// them, and those of any kind. None where no push is free.
+    /// Counts the perturbations that gain with these multipliers: those that keep the paper's symmetries, if the curve has them,
+    /// and those of any kind. The list is empty if the curve has no free stretch.
     pub(super) fn ascents(&self, gain: Gain, momentum: Momentum) -> Vec<Check> {
         let of = |symmetric: bool| {
             let neighbours = Neighbours {
@@ -95,7 +96,7 @@ impl Subject<'_> {
 }
 
 impl Neighbours<'_> {
-    /// Which directions lead up; none where the curve cannot be pushed.
+    /// Ascent directions. Returns `None` if the curve has no free stretch.
     pub(super) fn ascents(&self) -> Option<Ascents> {
         let Subject { path, coarse, .. } = self.subject;
         let mesh = self.mesh();
@@ -185,7 +186,7 @@ impl Neighbours<'_> {
         Some((reduced, before, far))
     }
 
-    /// How far a push of each knot turns the heading at the start.
+    /// Rotation of the heading at the start per unit push of each knot.
     fn started(&self, mesh: &Mesh) -> DVector<f64> {
         let mut started = DVector::zeros(mesh.count);
         if let (Some(Some(knot)), Some(place)) = (

@@ -1,19 +1,19 @@
 //! Weights of the polynomial through a few neighbouring samples: its value, slope, bend, and integral.
 //!
-//! A certificate must see slopes of a curve that is known by its samples only. Polynomials of two degrees give each slope
-//! twice, and their difference tells how much of it the sampling leaves open.
+//! A certificate needs the slopes of a curve that is known by its samples only. Polynomials of two degrees give each slope twice,
+//! and their difference estimates the uncertainty of the sampling.
 
 use swimmer_model::GaussLegendre;
 
 /// Samples that the finer polynomial takes.
 pub(super) const MOST: usize = 9;
-/// How many fewer the coarser one takes.
+/// Difference in samples between the finer and the coarser polynomial.
 pub(super) const FEWER: usize = 2;
 
 /// One weight for each sample of a stencil; those beyond the stencil are zero.
 pub(super) type Weights = [f64; MOST];
 
-/// Value, slope, bend, as many of them as are asked for, at one place of the polynomial through the samples at `places` (at
+/// Weights of value, slope and bend, the first `ORDERS` of them, at `at`, of the polynomial through the samples at `places` (at
 /// most [`MOST`]).
 ///
 /// B. Fornberg, *Generation of finite difference formulas on arbitrarily spaced grids*, Math. Comp. 51 (1988).
@@ -62,7 +62,7 @@ pub(super) fn integral(places: &[f64], from: f64, to: f64) -> Weights {
     sum
 }
 
-/// First sample and number of samples of the stencil round the stretch `from..=to`, within `0..count`, of so many samples fewer
+/// First sample and number of samples of the stencil around the stretch `from..=to`, within `0..count`, with `fewer` samples less
 /// than the finer polynomial takes.
 pub(super) fn around(from: usize, to: usize, count: usize, fewer: usize) -> (usize, usize) {
     let width = (MOST.min(count).saturating_sub(fewer)).max(2).min(count);

@@ -25,7 +25,7 @@ impl Displacement<'_> {
         let place = kept(0.0, to.clone());
         let all = self.all(value, to.heading_counter_clockwise())?;
         let found = all.into_iter().map(|gait| kept(value, gait));
-        // An optimum before an extremal that is none.
+        // An optimum is preferred to an extremal that is not an optimum.
         let far = |kept: &BranchPoint| {
             let apart = kept.apart(&place);
             if kept.holds() || apart > 0.05 {

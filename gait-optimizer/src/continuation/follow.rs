@@ -293,7 +293,8 @@ impl<F: Family> Walk<'_, F> {
         self.before = None;
     }
 
-    /// Continues with the nearest optimum at the next stop that has one. Returns `false` if there is none or the family does not jump.
+    /// Continues with the nearest optimum at the next stop that has one. Returns `false` without such an optimum, or if the
+    /// family does not jump.
     fn resumes(&mut self) -> bool {
         if !F::JUMPS {
             return false;

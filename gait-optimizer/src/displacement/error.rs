@@ -10,7 +10,7 @@ use crate::problem::InvalidProblem;
 /// Fates of the extremals that the search traced.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Fates {
-    /// How many were sent out.
+    /// Number of quarters traced.
     pub sent: usize,
     /// Reached φ₁ = −φ₂.
     pub ended: usize,
@@ -80,7 +80,7 @@ pub enum DisplacementError {
          gait can then run along it"
     )]
     NoUnboundedOptimum {
-        /// What the search saw.
+        /// Counts of how the traced quarters ended.
         fates: Fates,
     },
     /// Under these bounds there is no optimum with this sign of X.
@@ -132,7 +132,7 @@ impl DisplacementError {
         }
     }
 
-    /// What the search saw, in the terms of the maximum principle; `None` if the error itself says it all.
+    /// Summary of the search in the terms of the maximum principle. Returns `None` if the error is complete without it.
     pub fn details(&self) -> Option<String> {
         match self {
             Self::NoUnboundedOptimum { fates } => Some(format!(

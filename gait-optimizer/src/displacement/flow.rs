@@ -12,13 +12,13 @@ const MOST_ARCS: usize = 12;
 /// Longest curve of a quarter \[rad\].
 const LONGEST_CURVE: f64 = 40.0;
 
-/// As closely as an extremal is followed that shall be an answer.
+/// Step control of an extremal that is returned as a result.
 pub(super) const FINE: StepControl = StepControl {
     tolerance: 1e-13,
     longest: 0.3,
 };
 
-/// What a quarter does where it first meets φ₁ = −φ₂.
+/// Behaviour of a quarter where it first meets φ₁ = −φ₂.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Touch {
     /// Ends there.
@@ -29,17 +29,17 @@ pub(crate) enum Touch {
     GoesOutwards,
 }
 
-/// How to follow arcs.
+/// Options for tracing arcs.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TraceOptions {
     pub(crate) control: StepControl,
-    /// Whether bounds are left where the multiplier falls to zero.
+    /// `true` to leave a bound when its multiplier falls to zero.
     pub(crate) leaves: bool,
-    /// Where the quarter has been before the state that is followed from.
+    /// Earlier contacts of the quarter with the diagonals.
     pub(crate) met: Met,
 }
 
-/// Where a quarter has met the diagonals. It may meet neither there again.
+/// Contacts of a quarter with the diagonals. It may not touch either of them again at these places.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Met {
     /// The lowest and the highest φ₁ + φ₂ on φ₁ = φ₂.
@@ -71,7 +71,7 @@ impl Met {
     }
 }
 
-/// How a quarter came to its end.
+/// Reason why the trace of a quarter ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Fate {
     /// On φ₁ = −φ₂, as it should.
@@ -96,12 +96,12 @@ pub(crate) struct Quarter {
 }
 
 impl Quarter {
-    /// Whether it touched φ₁ = −φ₂ and went on along it.
+    /// `true` if it touched φ₁ = −φ₂ and continued along it.
     pub(crate) fn touched(&self) -> bool {
         self.met.end.is_some()
     }
 
-    /// Whether it ends on φ₁ = −φ₂ as it may: beyond where it ran along that line.
+    /// `true` if it ends on φ₁ = −φ₂ at an admissible place: beyond the stretch that it ran along that line.
     pub(crate) fn ended(&self) -> bool {
         let beyond = self.met.end.is_none_or(|[from, to]| {
             let end = self.end[1] - self.end[0];
@@ -110,8 +110,8 @@ impl Quarter {
         self.fate == Fate::Ended && beyond
     }
 
-    /// What it becomes where it does otherwise than end where it first meets φ₁ = −φ₂; none where that line is no bound or another
-    /// bound is in the way.
+    /// Continuation along φ₁ = −φ₂ of a quarter that ends there. Returns `None` if that line is no bound or another bound is in
+    /// the way.
     pub(crate) fn going_on(
         &self,
         touch: Touch,
@@ -197,7 +197,7 @@ pub(crate) fn follow(
     }
 }
 
-/// Where a quarter ends.
+/// Events that end a quarter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum End {
     /// φ₁ + φ₂ falls to zero.
@@ -248,7 +248,7 @@ fn on_diagonal(motion: &Motion) -> bool {
     motion.kind() == ArcKind::Diagonal
 }
 
-/// On along φ₁ = −φ₂; none where the quarter shall end, that line is no bound or another bound is in the way.
+/// Motion along φ₁ = −φ₂. Returns `None` for [`Touch::Ends`], if that line is no bound, or if another bound is in the way.
 fn along_the_end(region: &Region, at: &State, touch: Touch) -> Option<Motion> {
     const AHEAD: f64 = 1e-6;
     let index = region
@@ -265,7 +265,7 @@ fn along_the_end(region: &Region, at: &State, touch: Touch) -> Option<Motion> {
     (region.overstepped(&ahead) < 0.5 * AHEAD).then_some(Motion::Along(track))
 }
 
-/// Which way a bound is run that an arc meets, of a quarter that has met φ₁ = φ₂ between such φ₁ + φ₂.
+/// Direction along a bound that an arc meets, for a quarter with this range of φ₁ + φ₂ on φ₁ = φ₂.
 fn onto(track: Track, flow: &Flow<'_>, at: &State, [_, highest]: [f64; 2]) -> Motion {
     let phi = shape(at);
     let along = track.direction(&phi);

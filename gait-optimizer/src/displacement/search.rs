@@ -28,7 +28,7 @@ pub(crate) struct Candidate {
 }
 
 impl Candidate {
-    /// The cycle in four times so many samples at equal steps of power length; none where it cannot be traced.
+    /// The cycle in `4 samples` samples at equal steps of power length. Returns `None` if it cannot be traced.
     pub(crate) fn cycle(&self, model: &Model<f64>, samples: usize) -> Option<Cycle> {
         let legs = || lasting(&self.quarter.legs);
         let mut start = legs().next()?.from;
@@ -61,7 +61,7 @@ pub(crate) struct Line<'a> {
     pub(crate) touch: Touch,
 }
 
-/// What quarters do where they first meet φ₁ = −φ₂. They are the same up to there.
+/// Behaviours of quarters at their first contact with φ₁ = −φ₂. Up to there they are the same.
 const TOUCHES: [Touch; 3] = [Touch::Ends, Touch::GoesInwards, Touch::GoesOutwards];
 
 /// Places looked at on each family.
@@ -177,8 +177,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The candidate between two places of the coarse scan, where `λ₄(t_f)` is zero: near it at the coarse tolerance, which the
-    /// bracket holds for, then secants at the fine one. None where it does not change its sign, and at a jump.
+    /// The candidate between two places of the coarse scan, with `λ₄(t_f) = 0`: first at the coarse tolerance, for which the
+    /// bracket is valid, then by secants at the fine one. Returns `None` without a change of sign, and at a jump.
     fn between(&self, line: Line<'_>, ends: [(f64, f64); 2]) -> Option<Candidate> {
         let changes = ends[0].1.signum() * ends[1].1.signum() < 0.0;
         let coarse = |p| Some(self.miss(line, p, COARSE)?.lambda4);
@@ -186,8 +186,8 @@ impl<'a> Search<'a> {
         self.near(line, near)
     }
 
-    /// The candidate near a place: secants at a middling tolerance, then a few steps at the fine one with the slope found there, since
-    /// the fine shots are what costs. None where the secants lead away.
+    /// The candidate near a place: secants at an intermediate tolerance, then a few steps at the fine one with the same slope,
+    /// since the fine shots dominate the cost. Returns `None` if the secants diverge.
     pub(super) fn near(&self, line: Line<'_>, near: f64) -> Option<Candidate> {
         let (mut p, slope) = self.secants(line, near)?;
         let lambda4 = |shot: &Shot<'_>| Some(self.miss_of(shot, line)?.lambda4);

@@ -1,4 +1,4 @@
-//! Where singular arcs may begin: on φ₁ = φ₂, or anywhere along the bounds that lead from there to φ₁ = −φ₂.
+//! Start families of singular arcs: places on φ₁ = φ₂, or along the bounds that lead from there to φ₁ = −φ₂.
 
 use std::f64::consts::PI;
 
@@ -35,7 +35,7 @@ pub(crate) struct Stretch {
     track: Track,
     from: State,
     to: State,
-    /// Where it starts and ends, as p.
+    /// First and last p of the family.
     span: [f64; 2],
 }
 
@@ -43,7 +43,7 @@ pub(crate) struct Stretch {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Place {
     pub(crate) state: State,
-    /// What the curve runs along up to here; singular on φ₁ = φ₂.
+    /// Motion of the curve up to the family; singular on φ₁ = φ₂.
     pub(crate) motion: Motion,
 }
 
@@ -135,7 +135,7 @@ fn options(began: &State, leaves: bool) -> TraceOptions {
     }
 }
 
-/// Where quarters begin that leave the straight shape along φ₁ = −φ₂; none where the bounds do not allow it.
+/// Start of the quarters that leave the straight shape along φ₁ = −φ₂. Returns `None` if the bounds do not allow it.
 fn straight_shape(region: &Region, index: usize) -> Option<Place> {
     let straight = Vector2::zeros();
     let track = Track::new(region, index, &straight, 1.0)?.back();
@@ -145,8 +145,8 @@ fn straight_shape(region: &Region, index: usize) -> Option<Place> {
     })
 }
 
-/// Where the multiplier of φ₁ = −φ₂ falls to zero along a stretch of that line. Its curvature has no θ component, so it is the
-/// same place for every λ₄.
+/// State at which the multiplier of φ₁ = −φ₂ falls to zero along a stretch of that line. Its curvature has no θ component, so the
+/// place is the same for every λ₄.
 fn turn(flow: Flow<'_>, region: &Region, stretch: &Stretch) -> Option<State> {
     let start = Place {
         state: stretch.from,
@@ -178,7 +178,7 @@ fn stretches(legs: &[Leg]) -> Vec<Stretch> {
     lasting(legs).filter_map(stretch).collect()
 }
 
-/// Where a bound that leads towards φ₁ = −φ₂ meets φ₁ = φ₂ > 0, and which way round it is run from there.
+/// First point on a bound towards φ₁ = −φ₂, where it meets φ₁ = φ₂ > 0, and the direction along the bound from there.
 fn start(bound: &Bound) -> Option<(f64, f64)> {
     match bound {
         // φ₂ ≤ φ_max and φ₂ ≥ φ_min, both run towards smaller φ₁.
@@ -210,12 +210,12 @@ impl StartFamily {
         }
     }
 
-    /// What quarters that leave it may do where they first meet φ₁ = −φ₂: anything, or what they have done.
+    /// `true` if quarters that leave the family may show this behaviour at their first contact with φ₁ = −φ₂.
     pub(crate) fn may(&self, touch: Touch) -> bool {
         !matches!(self, Self::EndLine { touch: done, .. } if *done != touch)
     }
 
-    /// Where a quarter has been that leaves the family in a state.
+    /// Contacts with the diagonals of a quarter that leaves the family in a state.
     pub(crate) fn met(&self, state: &State) -> Met {
         let begins = self.start().map_or(*state, |start| start.state);
         let met = Met::beginning(&begins);
@@ -265,7 +265,8 @@ impl StartFamily {
         final_y.is_finite().then_some(final_y)
     }
 
-    /// The place nearest to a shape, about: bounds count as the chords of their stretches. None where shapes do not tell.
+    /// The place nearest to a shape, approximately: bounds count as the chords of their stretches. Returns `None` if shapes do
+    /// not determine the place.
     pub(crate) fn nearest(&self, phi: &Vector2<f64>) -> Option<f64> {
         match self {
             Self::StartLine { low, high } => Some((0.5 * (phi.x + phi.y)).clamp(*low, *high)),

@@ -17,7 +17,7 @@ fn three_links(chi: f64) -> Swimmer<f64> {
     }
 }
 
-/// A drag that is the same in all directions moves nothing, and what is left of the height is rounding.
+/// A drag that is the same in all directions moves nothing, and the height is pure rounding.
 #[test]
 fn isotropic_drag_has_no_gait() {
     for chi in [1.0, 1.0 + 1e-10, 1.0 - 1e-10] {
@@ -29,7 +29,7 @@ fn isotropic_drag_has_no_gait() {
     }
 }
 
-/// Nearly isotropic drag moves the swimmer nearly in proportion to what is left.
+/// Nearly isotropic drag moves the swimmer nearly in proportion to χ − 1.
 #[test]
 fn nearly_isotropic_drag_moves_a_little() {
     let of = |chi: f64| {
@@ -43,8 +43,8 @@ fn nearly_isotropic_drag_moves_a_little() {
     );
 }
 
-/// Between rounding and a little a gait may be refused, but what is found is in proportion to what is left, and nothing is
-/// followed without end.
+/// Between rounding and weak anisotropy a gait may be refused, but displacements are in proportion to χ − 1, and no search runs
+/// without end.
 #[test]
 fn what_is_found_beside_isotropic_drag_is_no_rounding() {
     let of = |off: f64| {
@@ -120,7 +120,7 @@ fn neither_sense_has_an_optimum() {
             fates
         }
     );
-    // A gait that fails its certificate says more than that there is none.
+    // A gait that fails its certificate gives a more specific error than an empty search.
     let failed = DisplacementError::NotCertified {
         displacement_over_length: 0.1,
         failed: String::new(),

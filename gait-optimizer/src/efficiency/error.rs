@@ -17,7 +17,7 @@ pub enum EfficiencyError {
     /// The free gait violates a bound, and its branch ends before it satisfies the bound.
     #[error("the {branch} gait, followed as the bounds tighten, ends at {reached}: {reason}")]
     BranchEnds {
-        /// Which gait.
+        /// Branch of the gait.
         branch: Branch,
         /// Bounds at the end of the branch.
         reached: Reached,
@@ -27,7 +27,7 @@ pub enum EfficiencyError {
     /// The free gait violates a bound, and the first step of the continuation failed.
     #[error("the free {branch} gait breaks a bound and cannot be followed along it: {reason}")]
     NotFollowed {
-        /// Which gait.
+        /// Branch of the gait.
         branch: Branch,
         /// Reason for the failure.
         reason: String,
@@ -37,7 +37,7 @@ pub enum EfficiencyError {
         "this swimmer has no {branch} gait of most efficiency, or one at larger angles than are searched"
     )]
     NoStart {
-        /// Which gait.
+        /// Branch of the gait.
         branch: Branch,
         /// Largest |X|/S of the required sign among the circles and ellipses.
         best: f64,
@@ -48,7 +48,7 @@ pub enum EfficiencyError {
          {farthest:.2} rad; `swimmer atlas --objective efficiency --max-angle 2.8` finds those within a bound"
     )]
     RunsAway {
-        /// Which gait.
+        /// Branch of the gait.
         branch: Branch,
         /// Amplitude of the initial circle \[rad\].
         amplitude: f64,
@@ -65,7 +65,7 @@ pub enum EfficiencyError {
          efficiency` lists such gaits, too"
     )]
     CrossesItself {
-        /// Which gait.
+        /// Branch of the gait.
         branch: Branch,
         /// Order of the series.
         order: usize,
@@ -81,7 +81,7 @@ pub enum EfficiencyError {
          `link-ratio=FROM..TO`"
     )]
     NotConverged {
-        /// Which gait.
+        /// Branch of the gait.
         branch: Branch,
         /// Order of the series.
         order: usize,
@@ -94,7 +94,7 @@ pub enum EfficiencyError {
          and a {branch} gait is one with {definition}"
     )]
     OtherBranch {
-        /// Which gait.
+        /// Branch of the gait.
         branch: Branch,
         /// Its efficiency.
         efficiency: f64,
@@ -111,7 +111,7 @@ pub enum EfficiencyError {
          atlas --objective efficiency` finds those"
     )]
     Saddle {
-        /// Which gait.
+        /// Branch of the gait.
         branch: Branch,
         /// The gait, whose certificate fails only in the second variation.
         gait: Box<OptimalGait>,
@@ -121,7 +121,7 @@ pub enum EfficiencyError {
         "the {branch} gait found does not meet all conditions of an optimum, so it is not returned; try other bounds"
     )]
     NotCertified {
-        /// Which gait.
+        /// Branch of the gait.
         branch: Branch,
         /// Its efficiency.
         efficiency: f64,

@@ -42,7 +42,7 @@ impl Motion {
         }
     }
 
-    /// Motion along the next piece of the bound. Returns `None` if there is none.
+    /// Motion along the next piece of the bound. Returns `None` on the last piece.
     pub(crate) fn next_piece(&self) -> Option<Self> {
         self.track()?.next_piece().map(Self::Along)
     }

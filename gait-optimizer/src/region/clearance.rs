@@ -16,7 +16,7 @@ impl Level {
     }
 }
 
-/// What is nearest to what, or crosses it: which tip, 0 for the front link's and 1 for the back link's, as the angles φ₁ and φ₂.
+/// Pair of features that decides the clearance. A tip is 0 on the front link and 1 on the back link, as the angles φ₁ and φ₂.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Piece {
     /// The tip of one side link, to the inside of the other.
@@ -48,7 +48,7 @@ pub struct Clearance {
 }
 
 impl Clearance {
-    /// The curved bound for a clearance `distance` ≥ 0 below l₀; none where the tips can never come that near.
+    /// The curved bound for a clearance `distance` ≥ 0 below l₀. Returns `None` if the tips cannot come that near.
     pub(crate) fn new(links: &Links<f64>, distance: f64) -> Option<Self> {
         (links.front + links.back > links.middle - distance).then_some(Self {
             links: *links,
@@ -81,7 +81,7 @@ impl Clearance {
         }
     }
 
-    /// Which piece decides at a shape.
+    /// Deciding piece at a shape.
     pub(crate) fn piece(&self, phi: &Vector2<f64>) -> Piece {
         if let Some(held) = self.held {
             return held;
@@ -155,8 +155,8 @@ impl Clearance {
         level
     }
 
-    /// What is left to the end of a piece where the next tip takes over, with its slope in Φ: positive on the piece. None
-    /// for a tip at a joint, which ends elsewhere.
+    /// Margin to the end of a piece, where the next tip takes over, with its slope in Φ: positive on the piece. `None` for a tip
+    /// at a joint, which ends elsewhere.
     pub(crate) fn piece_end(
         &self,
         piece: Piece,
@@ -186,12 +186,12 @@ impl Clearance {
             .then(|| cos.acos())
     }
 
-    /// Whether the bound has no extent between the tips: a corner instead of an arc.
+    /// `true` if the bound has no extent between the tips: a corner instead of an arc.
     pub(crate) fn has_corner(&self) -> bool {
         self.distance <= 0.0
     }
 
-    /// What follows a tip towards the corner of the zone: the other one where they meet there.
+    /// Piece that follows a tip towards the corner of the zone: the other tip, if they meet there.
     pub(crate) fn after_tip(&self, tip: usize) -> Piece {
         if self.has_corner() {
             Piece::Tip(1 - tip)
@@ -210,12 +210,12 @@ impl Clearance {
         [0, 1].map(|tip| self.height_level(phi, tip).value)
     }
 
-    /// Where a tip's foot on the line of the other link lies, from that link's joint.
+    /// Distance of the foot of a tip on the line of the other link from that link's joint.
     fn foot(&self, phi: &Vector2<f64>, tip: usize) -> f64 {
         -self.links.middle * phi[1 - tip].cos() - self.side(tip) * phi.sum().cos()
     }
 
-    /// What of the other link is nearest to each tip.
+    /// Feature of the other link that is nearest to each tip.
     fn tip_pieces(&self, phi: &Vector2<f64>) -> [Piece; 2] {
         [0, 1].map(|tip| {
             let foot = self.foot(phi, tip);
@@ -289,7 +289,7 @@ pub(super) fn tips_meet(links: &Links<f64>) -> Option<Vector2<f64>> {
     is_one.then_some(corner)
 }
 
-/// Which of both forbidden zones is nearer: 1 where both angles are positive.
+/// The nearer of the two forbidden zones: 1 for positive angles.
 fn zone(phi: &Vector2<f64>) -> f64 {
     if phi.sum() < 0.0 { -1.0 } else { 1.0 }
 }

@@ -75,7 +75,7 @@ pub enum RobustError {
         left_over(*residual)
     )]
     NotConverged {
-        /// Last residual; infinite if there is none.
+        /// Last residual; infinite if it is unknown.
         residual: f64,
     },
     /// A bound that the family does not support is violated.

@@ -19,7 +19,7 @@ use crate::speed::{Fastest, Polished, Setting, SpeedProblem, mended, speed_of, t
 pub struct RobustSpeed {
     /// The gait, timed as it shall run; its numbers are those of the estimates' swimmer.
     pub fastest: Fastest,
-    /// What robustness costs and brings, in |d|/(L T) \[1/s\].
+    /// Cost and benefit of robustness, in |d|/(L T) \[1/s\].
     pub robustness: Robustness,
 }
 
@@ -50,7 +50,7 @@ impl Design for Chains<'_> {
         self.unit
     }
 
-    /// Newton's method on all conditions, the arcs mended where they no longer fit.
+    /// Newton's method on all conditions, with an active-set update of the arcs.
     fn solve(&self, start: &Polished, members: &[(Member, f64)]) -> Result<Polished, RobustError> {
         let setting = Setting {
             members,
@@ -76,11 +76,12 @@ fn turns_nobody(ensemble: &Ensemble<'_>, cycle: &Cycle) -> Result<f64, RobustErr
     Ok(rotation)
 }
 
-/// The gait whose speed |d|/T, in the worst case or in the mean over the uncertainty, is the most with servos of these rates. r_s and χ of
-/// the problem's swimmer give way to the estimates, whose fastest gait comes first. No swimmer may rotate along it.
+/// The gait of highest speed |d|/T, in the worst case or in the mean over the uncertainty, for servos with these rates. The
+/// estimates replace r_s and χ of the problem's swimmer, and their fastest gait is computed first. No swimmer may rotate along
+/// the gait.
 ///
 /// # Errors
-/// [`RobustError`]: why there is none.
+/// [`RobustError`] if no robust gait is found.
 ///
 /// ```
 /// use gait_optimizer::{Bounds, Over, SpeedProblem, Uncertainty, robust_speed};

@@ -186,7 +186,8 @@ fn robust_efficiency_pays_too() {
     }
 }
 
-/// A gain in doubt alone: a little more angle than told is more than a little less loses, so both ends may hold the worst case.
+/// An uncertain gain alone: a slightly larger angle gains more than a slightly smaller one loses, so both ends may be the worst
+/// case.
 #[test]
 fn a_gain_in_doubt_is_designed_for() {
     let exact = Uncertainty {

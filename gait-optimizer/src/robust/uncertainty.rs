@@ -1,7 +1,7 @@
-//! What is known of r_s, χ and the servos' gain, as the swimmers that a robust gait is held against.
+//! Uncertainty of r_s, χ and the servos' gain, and the set of swimmers that represents it.
 //!
-//! A calibration fits r_s and ln χ: its interval of χ is χ·exp(±d), and its correlation is that of r_s and ln χ. So
-//! everything here lives in the plane of r_s and ln χ, where χ stays above 0 by itself. The gain has an interval of its own.
+//! A calibration fits r_s and ln χ: its interval of χ is χ·exp(±d), and its correlation is that of r_s and ln χ. So the
+//! uncertainty is defined in the plane of r_s and ln χ, where χ stays positive. The gain has an interval of its own.
 
 #[cfg(test)]
 mod tests;
@@ -27,8 +27,8 @@ pub struct Uncertainty {
     pub sphere_radius_interval: [f64; 2],
     /// Interval of χ.
     pub chi_interval: [f64; 2],
-    /// Interval about 1 of the servos' gain, what both turn over what they are told: shapes are so many times the told ones,
-    /// while bounds on angles and the servos' rates are about what is told. An estimate other than 1 belongs into the servo map.
+    /// Interval about 1 of the servos' gain: actual over commanded angle. Shapes scale with it, while bounds on angles and rates
+    /// apply to the commanded shapes. An estimate other than 1 belongs into the servo map.
     pub gain_interval: [f64; 2],
     /// Level of all.
     pub level: f64,
@@ -42,9 +42,9 @@ pub struct Uncertainty {
 pub(super) struct Axis {
     from: f64,
     to: f64,
-    /// Steps of the grid; none where there is nothing open.
+    /// Steps of the grid; 0 if nothing is uncertain.
     steps: u32,
-    /// Whether both ends are one.
+    /// `true` if both ends are the same point.
     round: bool,
 }
 
@@ -194,12 +194,12 @@ impl Uncertainty {
         self.correlation.map(|rho| if both { rho } else { 0.0 })
     }
 
-    /// Whether nobody knows how far the servos turn.
+    /// `true` if the gain is uncertain.
     pub(super) fn gain_is_open(&self) -> bool {
         is_open(self.widths()[2])
     }
 
-    /// The swimmer so far from the estimates, in r_s \[m\], ln χ and gain. A sphere below nothing counts as none.
+    /// The swimmer at this offset from the estimates, in r_s \[m\], ln χ and gain. A negative sphere radius counts as 0.
     fn off(
         &self,
         swimmer: &Swimmer<f64>,
@@ -250,7 +250,7 @@ impl Uncertainty {
     /// The swimmer at these coordinates.
     ///
     /// # Errors
-    /// There is none.
+    /// The swimmer is invalid.
     pub(super) fn at(
         &self,
         swimmer: &Swimmer<f64>,
@@ -279,16 +279,16 @@ impl Uncertainty {
         places
     }
 
-    /// Swimmers with weights that integrate over a normal distribution of r_s and ln χ about the estimates: standard
-    /// deviations from intervals and level, correlated where that is known. Of uneven sides the mean counts. A sphere below
-    /// nothing counts as none.
+    /// Swimmers with weights that integrate over a normal distribution of r_s and ln χ about the estimates: standard deviations
+    /// from intervals and level, correlated if the correlation is known. Of unequal sides the mean counts. A negative sphere
+    /// radius counts as 0.
     ///
-    /// An interval does not tell its degrees of freedom, so the deviation is taken as if they were many: half width over the
-    /// normal quantile. A calibration's intervals are Student's, wider for few runs: there the deviation comes out larger than the
-    /// standard error, and the mean is taken over a wider spread than the fit's own.
+    /// An interval does not state its degrees of freedom, so they are taken as infinite: the deviation is the half width over the
+    /// normal quantile. A calibration's intervals are Student's and wider for few runs. For those the deviation is larger than
+    /// the standard error, and the mean covers a wider spread than the fit's own.
     ///
     /// # Errors
-    /// One of them is none.
+    /// A swimmer is invalid.
     pub(super) fn normal(
         &self,
         swimmer: &Swimmer<f64>,
@@ -322,7 +322,7 @@ impl Uncertainty {
 const STEPS: u32 = 4;
 const GAIN_STEPS: u32 = 2;
 
-/// Whether an interval of these half widths leaves anything open.
+/// `true` if an interval with these half widths has a width.
 fn is_open([below, above]: [f64; 2]) -> bool {
     below + above > 0.0
 }

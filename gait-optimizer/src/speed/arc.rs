@@ -16,7 +16,7 @@ pub(crate) const MOST_BENDS: usize = 24;
 /// Both ends, and the bends.
 pub(crate) const MOST_PARAMETERS: usize = 4 + MOST_BENDS;
 
-/// What curve joins the ends.
+/// Curve that joins the ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Shape {
     /// A straight line.
@@ -90,7 +90,7 @@ impl Shape {
         place
     }
 
-    /// What the arc brings.
+    /// Contribution of the arc to pose and time, with first and second derivatives.
     pub(crate) fn jet(
         &self,
         model: &Model<f64>,
@@ -105,7 +105,7 @@ impl Shape {
         }
     }
 
-    /// What the arc brings, without slopes.
+    /// Contribution of the arc to pose and time.
     pub(crate) fn value(
         &self,
         model: &Model<f64>,

@@ -1,4 +1,4 @@
-//! From a start to a polished chain: polygon, arcs, polish, and the arcs mended where the polish shows them wrong.
+//! From a start to a polished chain: polygon, arcs, polish, and an active-set update until the arcs fit.
 
 use super::arc::MOST_BENDS;
 use super::interior::{Polygon, best_polygon};
@@ -10,7 +10,7 @@ use super::within_rates::within_rates;
 
 /// Sides of a finished polygon for each of a rough one.
 pub(super) const SIDES: usize = 2;
-/// Times that the arcs are mended.
+/// Largest number of active-set updates.
 const MENDS: usize = 8;
 /// By how much the second variation of a chain may be negative.
 const NEARLY: f64 = 1e-4;
@@ -20,7 +20,7 @@ const OVERSTEPPED: f64 = 1e-10;
 /// First guesses of a singular arc, over half of any new arc's.
 const LENGTHS: [f64; 3] = [1.0, 3.0, 9.0];
 
-/// The chain that a rough polygon leads to, with so many times its sides.
+/// The chain that a rough polygon leads to, with `times` as many sides.
 pub(crate) fn candidate(setting: &Setting, rough: &Polygon, times: usize) -> Option<Polished> {
     let polygon = best_polygon(setting, rough, times)?;
     let links = arcs(setting, &polygon)?;
@@ -49,8 +49,9 @@ fn lap(setting: &Setting, links: &[Link]) -> Option<Vec<Link>> {
     Some(links[..lap].to_vec())
 }
 
-/// Polishes, and mends the arcs until they fit: bounds that are overstepped hold, corners that rest on a bound become arcs along
-/// it, arcs that run backwards go, ends of singular arcs at which a servo is too fast become extreme, and bounds that pull let go.
+/// Polishes, and updates the active set until the arcs fit: violated bounds become active, corners that rest on a bound become
+/// arcs along it, arcs of negative length are removed, ends of singular arcs at which a servo is too fast become extreme, and
+/// bounds with a negative multiplier are released.
 pub(crate) fn mended(setting: &Setting, mut links: Vec<Link>) -> Option<Polished> {
     for _ in 0..MENDS {
         widened::along_bounds(setting, &mut links);
@@ -85,8 +86,8 @@ pub(crate) fn mended(setting: &Setting, mut links: Vec<Link>) -> Option<Polished
             });
         }
         if !changed {
-            // Few bends may follow a long singular arc so loosely that it hardly matters where it ends, and where gaits join an arc may
-            // be left that a little more speed would take out: the certificate tells.
+            // Few bends may represent a long singular arc so loosely that its end hardly matters, and for joined gaits an arc may
+            // remain that a slightly higher speed would remove: the certificate decides.
             return (polished.convexity > -NEARLY).then_some(polished);
         }
         links = next;
@@ -94,7 +95,7 @@ pub(crate) fn mended(setting: &Setting, mut links: Vec<Link>) -> Option<Polished
     None
 }
 
-/// What a chain passes as: itself, or with more bends.
+/// Certified form of a chain: the chain itself, or one with more bends.
 pub(super) fn certified_closely<T>(
     setting: &Setting,
     chain: &Polished,
@@ -128,8 +129,8 @@ fn with_more_bends(links: &mut [Link]) -> bool {
     more
 }
 
-/// The chain with short singular arcs at the corners of extreme arcs, between themselves or with arcs along bounds, where that is
-/// faster; none where it is nowhere.
+/// The chain with short singular arcs at the corners of extreme arcs, between themselves or with arcs along bounds, if that is
+/// faster. Returns `None` if no corner gains.
 fn bent(setting: &Setting, chain: &Polished) -> Option<Polished> {
     let mut best: Option<Polished> = None;
     let mut corner = 0;
@@ -155,7 +156,7 @@ fn bent(setting: &Setting, chain: &Polished) -> Option<Polished> {
     }
 }
 
-/// Whether an arc runs along what holds a corner.
+/// `true` if an arc runs along the bound that holds a corner.
 fn follows(motion: &Motion, hold: &Hold) -> bool {
     motion.bound().is_some_and(|bound| bound.0 == hold.0)
 }

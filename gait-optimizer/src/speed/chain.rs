@@ -12,7 +12,7 @@ use super::quadrature::Rule;
 #[derive(Debug, Clone)]
 pub(crate) struct Layout {
     pub(crate) shapes: Vec<Shape>,
-    /// Where the bends of each arc begin.
+    /// Index of the first bend of each arc.
     bends_at: Vec<usize>,
     pub(crate) size: usize,
 }

@@ -1,7 +1,7 @@
 //! From a rough closed curve to the best polygon near it: a primal–dual interior-point method over corners and times.
 //!
-//! Minimises ln T − ln |d| with no net rotation, each side's rates and each corner within the bounds. Sides are free to
-//! point anywhere, so this needs no guess of the arcs; which limits push tells them afterwards.
+//! Minimises ln T − ln |d| with no net rotation, each side's rates and each corner within the bounds. Sides are free to point
+//! anywhere, so this needs no guess of the arcs; they follow from the active limits.
 
 mod limits;
 
@@ -30,7 +30,7 @@ impl Polygon {
     }
 }
 
-/// Where the barrier starts, where a rough polygon ends, and where the best does.
+/// First barrier parameter, last one of a rough polygon, and last one of the best polygon.
 const FIRST_BARRIER: f64 = 1e-2;
 const ROUGH_BARRIER: f64 = 1e-4;
 const LAST_BARRIER: f64 = 1e-8;
@@ -40,15 +40,15 @@ const SHARE: f64 = 0.995;
 /// Quadrature points on a side.
 const POINTS: usize = 6;
 
-/// About the best polygon near a start whose corners lie strictly within the bounds; none where the method stalls or the gait
-/// does not swim.
+/// Approximation of the best polygon near a start whose corners lie strictly within the bounds. Returns `None` if the method
+/// stalls or the gait does not swim.
 pub(crate) fn rough_polygon(setting: &Setting, start: &[Vector2<f64>]) -> Option<Polygon> {
     let time = |_, [from, to]: [Vector2<f64>; 2]| 1.3 * setting.time(&(to - from)) + 1e-3;
     let (layout, z) = Layout::of_corners(start, Shape::Straight, time);
     Method::new(setting, layout).solve(z, [FIRST_BARRIER, ROUGH_BARRIER])
 }
 
-/// The best polygon of so many times as many sides near a rough one.
+/// The best polygon with `times` as many sides near a rough one.
 pub(crate) fn best_polygon(setting: &Setting, rough: &Polygon, times: usize) -> Option<Polygon> {
     let n = times * rough.layout.arcs();
     let part = 1.0 / times as f64;
@@ -69,7 +69,7 @@ struct Method<'a> {
     layout: Layout,
 }
 
-/// Where the iteration stands.
+/// State of the iteration.
 struct Iterate {
     z: DVector<f64>,
     /// Multipliers of the equalities.
@@ -118,7 +118,7 @@ impl<'a> Method<'a> {
         limits::inequalities(self.setting, &self.layout, z)
     }
 
-    /// How far the first corner is from where gaits join.
+    /// Distance of the first corner from the shape at which gaits join.
     fn anchored(&self, z: &DVector<f64>) -> Option<[f64; 2]> {
         let off = self.layout.corner(z, 0) - self.setting.asked.anchor?;
         Some([off.x, off.y])
@@ -238,7 +238,7 @@ impl<'a> Method<'a> {
                 }
             }
         }
-        // A large weight on the equalities shows whether what is left is convex along them.
+        // With a large weight on the equalities, the matrix is definite only if the Hessian is convex along them.
         let scale = 10.0 * matrix.diagonal().amax().clamp(1.0, 1e4);
         for (value, slope) in look.values.iter().zip(&look.slopes) {
             let weight = scale / slope.norm_squared().max(1e-12);
@@ -330,7 +330,7 @@ impl<'a> Method<'a> {
 }
 
 impl Look {
-    /// How far from the barrier's own optimum.
+    /// Residual of the barrier problem's KKT conditions.
     fn error(&self, here: &Iterate) -> f64 {
         let mut dual = self.gradient.clone();
         let mut error: f64 = 0.0;

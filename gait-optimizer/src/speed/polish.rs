@@ -45,7 +45,7 @@ pub(crate) fn speed_of(chain: &Polished, member: &Member) -> f64 {
     net.distance() / layout.period(z)
 }
 
-/// Polishes a chain; none where Newton's method does not converge.
+/// Polishes a chain. Returns `None` if Newton's method does not converge.
 pub(crate) fn polish(setting: &Setting, links: &[Link]) -> Option<Polished> {
     let rule = Rule::new(POINTS);
     let (layout, z) = written(setting, links);
@@ -131,7 +131,7 @@ fn written(setting: &Setting, links: &[Link]) -> (Layout, DVector<f64>) {
     (layout, z)
 }
 
-/// Where all conditions hold.
+/// Point at which all conditions hold.
 struct Solution {
     z: DVector<f64>,
     y: DVector<f64>,
@@ -141,7 +141,7 @@ struct Solution {
     weakest: DVector<f64>,
 }
 
-/// Newton's method from `z`; none where it does not converge.
+/// Newton's method from `z`. Returns `None` if it does not converge.
 fn solve(conditions: &Conditions, mut z: DVector<f64>) -> Option<Solution> {
     let mut y = conditions.look(&z, None)?.nearest_multipliers()?;
     let mut best = f64::INFINITY;

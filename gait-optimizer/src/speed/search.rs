@@ -39,7 +39,7 @@ pub fn fastest(problem: &SpeedProblem) -> Result<Fastest, SpeedError> {
 }
 
 impl SpeedProblem {
-    /// As [`fastest`], with the share of the work done passed to `watch`.
+    /// [`fastest`] with a progress callback: `watch` receives the completed fraction of the work.
     ///
     /// # Errors
     /// As [`fastest`].

@@ -1,4 +1,4 @@
-//! Which of the rough polygons are worth finishing.
+//! Selection of the rough polygons to refine.
 
 use nalgebra::Vector2;
 
@@ -8,7 +8,7 @@ use crate::parallel::{Watch, in_parallel};
 
 /// Polygons as fast and as long as each other, but for this share, lie near one gait.
 const ALIKE: f64 = 3e-3;
-/// Of one group so many are finished: alike is not the same.
+/// Number of polygons refined per group, since similar polygons may still lead to different gaits.
 const OF_A_GROUP: usize = 2;
 
 /// Polygons that lie near one gait.
@@ -16,7 +16,7 @@ const OF_A_GROUP: usize = 2;
 pub(crate) struct Group {
     /// Those to finish, fastest first.
     pub(crate) chosen: Vec<Polygon>,
-    /// How many there are.
+    /// Number of polygons in the group.
     pub(crate) count: usize,
 }
 

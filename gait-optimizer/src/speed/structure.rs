@@ -1,4 +1,4 @@
-//! Which arcs a polygon is made of: what pushes against each of its sides, and which corners rest on bounds.
+//! Arcs of a polygon, from its active set: the limits that hold each side, and the bounds that corners rest on.
 
 use nalgebra::Vector2;
 use swimmer_files::ArcKind;
@@ -8,7 +8,7 @@ use super::interior::Polygon;
 use super::setting::Setting;
 use crate::region::{Bound, Piece, Region};
 
-/// What one arc does.
+/// Motion of one arc.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Motion {
     /// Both servos at full rate, this way.
@@ -25,7 +25,7 @@ pub(crate) struct Link {
     pub(crate) corner: Vector2<f64>,
     /// Bounds that hold the corner, by their place in the region.
     pub(crate) held: Vec<Hold>,
-    /// Whether the corner is where gaits join.
+    /// `true` if the corner is the shape at which gaits join.
     pub(crate) anchored: bool,
     pub(crate) motion: Motion,
     /// Seconds.
@@ -65,7 +65,7 @@ const SHORTEST: f64 = 2e-3;
 const FITTED: usize = 3;
 
 impl Motion {
-    /// Which servo surely runs at full rate, and which way; both do on an extreme arc.
+    /// Servo at full rate, with its sign; on an extreme arc both are at full rate.
     pub(crate) fn pace(&self) -> (usize, f64) {
         match *self {
             Self::Extreme(ways) => (0, ways[0]),
@@ -116,7 +116,7 @@ impl Motion {
     }
 }
 
-/// The arcs of a polygon; none where they make no chain.
+/// The arcs of a polygon. Returns `None` if they make no chain.
 pub(crate) fn arcs(setting: &Setting, polygon: &Polygon) -> Option<Vec<Link>> {
     let layout = &polygon.layout;
     let period = layout.period(&polygon.z);
@@ -149,8 +149,8 @@ pub(crate) fn arcs(setting: &Setting, polygon: &Polygon) -> Option<Vec<Link>> {
     Some(links)
 }
 
-/// Where two straight bounds meet, a gait gains by cutting the corner with both servos at full rate: time of first order for area
-/// of second. A polygon whose sides are long may miss it.
+/// Cuts corners of the polygon. Where two straight bounds meet, a gait gains by cutting the corner with both servos at full rate:
+/// it saves time of first order for area of second order. A polygon with long sides may miss it.
 fn cut_corners(links: &mut Vec<Link>) {
     let mut at = 0;
     while at < links.len() {
@@ -245,7 +245,7 @@ pub(crate) fn merge(links: &mut Vec<Link>) {
     }
 }
 
-/// What a corner rests on, to within so much.
+/// Bounds that a corner rests on, to within `within`.
 pub(crate) fn holds(setting: &Setting, phi: &Vector2<f64>, within: f64) -> Vec<Hold> {
     setting
         .region

@@ -19,7 +19,7 @@ fn certified(found: &Fastest) {
     assert!(certificate.pass(), "{}", certificate.failures());
 }
 
-/// As found, and by its file alone.
+/// Certified as a result and from its file alone.
 fn certified_twice(found: &Fastest) {
     certified(found);
     let again = found.gait.certify().unwrap();
@@ -90,7 +90,7 @@ fn a_clearance_is_followed() {
     assert!(found.gait.arcs.iter().any(along));
 }
 
-/// The file alone tells the same, at any rate; a circle, a square and the gait made smaller by a hundredth do not pass.
+/// The file alone gives the same certificate, at any rate; a circle, a square and the gait scaled down by 1 % do not pass.
 #[test]
 fn the_certificate_is_that_of_the_curve() {
     let problem = within(Swimmer::purcell(), 2.8);

@@ -42,8 +42,8 @@ pub(super) fn along_bounds(setting: &Setting, links: &mut Vec<Link>) {
     }
 }
 
-/// The arc along a bound past the second of three corners, and how the joints turn on it; none where the other two do not lie
-/// inside.
+/// The arc along a bound past the second of three corners, and the joint rates on it. Returns `None` if the other two corners do
+/// not lie inside.
 fn along(
     setting: &Setting,
     hold: Hold,
@@ -66,8 +66,8 @@ fn along(
     Some((motion, turning))
 }
 
-/// Takes arcs out that run backwards: those along bounds between arcs off bounds all at once, and they let their corner go; of
-/// others the worst. Whether there were any.
+/// Removes arcs of negative length: those along bounds between free arcs all at once, and they release their corner; of others
+/// the worst. Returns `true` if there were any.
 pub(super) fn without_backwards(links: &mut Vec<Link>) -> bool {
     let count = links.len();
     let on_bound = |k: usize| links[k % count].motion.bound().is_some();
@@ -109,7 +109,7 @@ pub(super) fn with_singular(links: &[Link], corner: usize, short: f64) -> Option
     if links[corner].anchored {
         return None;
     }
-    // How long before and after the corner the new arc reaches, and what holds its ends.
+    // Reach of the new arc before and after the corner, and the bounds that hold its ends.
     let (back, ahead, held, (pace, way)) = match (old, new) {
         (Motion::Extreme(old), Motion::Extreme(new)) if links[corner].held.is_empty() => {
             let pace = (0..2).find(|&joint| (old[joint] - new[joint]).abs() < 0.5)?;

@@ -10,7 +10,7 @@ const TOO_FAST: f64 = 1e-7;
 /// Places of a singular arc that are looked at.
 const LOOKS: usize = 40;
 
-/// The arcs with extreme ones at such ends; none where there is no such end.
+/// The arcs with extreme ones at such ends. Returns `None` without such an end.
 pub(super) fn within_rates(setting: &Setting, chain: &Polished) -> Option<Vec<Link>> {
     let mut links = Vec::with_capacity(chain.links.len() + 2);
     let mut slower = false;
@@ -29,7 +29,7 @@ pub(super) fn within_rates(setting: &Setting, chain: &Polished) -> Option<Vec<Li
     Some(links)
 }
 
-/// What a singular arc becomes; none where no end of it is too fast, or all of it.
+/// Replacement of a singular arc. Returns `None` if no end of it is too fast, or all of it.
 fn cut(setting: &Setting, chain: &Polished, arc: usize) -> Option<Vec<Link>> {
     let link = &chain.links[arc];
     let Motion::Singular { pace, way } = link.motion else {

@@ -24,7 +24,7 @@ pub enum TurningError {
     Lost {
         /// Joint angles \[rad\].
         near: [f64; 2],
-        /// What stands in the way.
+        /// Obstacle.
         what: &'static str,
     },
     /// The curvature is nowhere positive.
@@ -41,7 +41,7 @@ pub enum TurningError {
 }
 
 impl TurningError {
-    /// Where a walk lost its way, and why.
+    /// A trace that could not continue, with the place and the reason.
     pub(super) fn lost(near: Vector2<f64>, what: &'static str) -> Self {
         Self::Lost {
             near: near.into(),

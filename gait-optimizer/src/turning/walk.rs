@@ -13,14 +13,14 @@ use crate::height_map::{End, Level, LevelSearch, OnCurve, Stride, passes};
 use crate::momentum::{Momentum, Motion, Track};
 use crate::region::Region;
 
-/// What the walks go by.
+/// Inputs of the traces.
 #[derive(Clone, Copy)]
 pub(super) struct Domain<'a> {
     pub(super) model: &'a Model<f64>,
     pub(super) region: &'a Region,
     /// Longest step \[rad\].
     pub(super) step: f64,
-    /// Whether walks go on along bounds where the curvature is negative.
+    /// `true` to continue along bounds where the curvature is negative.
     pub(super) stays_on_border: bool,
 }
 
@@ -38,7 +38,7 @@ type Place = (Motion, OnCurve);
 const ZERO: f64 = 1e-13;
 /// Another function takes over where it is below zero by more than this.
 const BEYOND: f64 = 1e-13;
-/// Which piece of another bound takes over is seen this far beyond a corner \[rad\].
+/// Distance beyond a corner at which the next piece of another bound is determined \[rad\].
 const AHEAD: f64 = 1e-5;
 /// A walk is back at a corner if it comes this near \[rad\].
 const BACK: f64 = 1e-6;
@@ -90,7 +90,7 @@ impl Domain<'_> {
         Ok(rounds)
     }
 
-    /// The border of what the bounds allow round the straight shape; none where it does not come round.
+    /// Boundary of the admissible region around the straight shape. Returns `None` if it does not close.
     fn border(self) -> Option<Vec<Piece>> {
         // Where φ₂ = 0 no other link is near, and only the bound on φ₁ binds.
         let mut edges = self.region.edges().iter().enumerate();
@@ -180,7 +180,7 @@ impl Domain<'_> {
         Ok((Piece { motion, points }, next))
     }
 
-    /// What vanishes along a motion and rises to its left.
+    /// Level function of a motion: it vanishes along the motion and rises to its left.
     pub(super) fn level(
         self,
         motion: Motion,
@@ -194,7 +194,7 @@ impl Domain<'_> {
         })
     }
 
-    /// What else must not fall through zero along a motion.
+    /// Other functions that must stay positive along a motion.
     fn beside(self, motion: Motion) -> impl Iterator<Item = Event<Infallible>> {
         let is_heeded = motion != Motion::Singular && !self.stays_on_border;
         let bounds = 0..self.region.bounds().count();
@@ -222,7 +222,7 @@ impl Domain<'_> {
         }
     }
 
-    /// What takes over where something falls through zero.
+    /// Motion after an event.
     fn after(
         self,
         motion: Motion,
@@ -241,7 +241,7 @@ impl Domain<'_> {
         self.on(next, at.phi)
     }
 
-    /// Where a motion begins.
+    /// Start of a motion.
     fn on(self, motion: Motion, phi: Vector2<f64>) -> Result<Place, TurningError> {
         let on = self.level(motion).corrected(&phi, None, 1e-6);
         let on = on.ok_or_else(|| TurningError::lost(phi, "zero-level curves cross"))?;
@@ -250,7 +250,7 @@ impl Domain<'_> {
 }
 
 impl Piece {
-    /// Whether it is more than a corner.
+    /// `true` if it is longer than a corner.
     pub(super) fn lasts(&self) -> bool {
         let mut sides = self.points.array_windows();
         sides.any(|[a, b]| (b - a).norm() > LASTING)

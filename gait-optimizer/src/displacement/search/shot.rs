@@ -22,13 +22,13 @@ pub(crate) struct Miss {
     pub(crate) lambda4: f64,
     /// λ₃ x there, over L; below zero it heads the wrong way, and is no gait.
     pub(crate) carried: f64,
-    /// Which arcs follow each other.
+    /// Sequence of the arcs.
     pub(super) arcs: u64,
 }
 
 impl<'a> Search<'a> {
-    /// The quarter that becomes singular at place p of a family, with its `y_f`. None where the singular control would leave
-    /// the region, or no `y_f` makes the height vanish.
+    /// The quarter that becomes singular at place p of a family, with its `y_f`. Returns `None` if the singular control would
+    /// leave the region, or if no `y_f` makes the height vanish.
     pub(super) fn shoot(
         &self,
         family: &StartFamily,
@@ -54,7 +54,7 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// What a shot becomes on its line, where that ends as it should.
+    /// Quarter of a shot on its line. Returns `None` if it does not end properly.
     fn onwards(&self, shot: &Shot<'_>, line: Line<'_>) -> Option<Quarter> {
         // From the end line a quarter has gone on along it already.
         let went_on = !line.family.may(Touch::Ends) && shot.quarter.touched();

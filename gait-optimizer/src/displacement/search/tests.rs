@@ -7,9 +7,9 @@ use crate::displacement::{DisplacementProblem, Heading, certified};
 use swimmer_files::{ArcKind, Bounds};
 use swimmer_model::Swimmer;
 
-/// Where λ₃ x of extremals beside a candidate is larger, the second variation of its samples must say so, and the other way round:
-/// two different roads to the same verdict. One extremal is no maximum: l₀ = l₁/2, χ = 1.2, backwards from 2.455 rad within
-/// 6.2 rad; it must fail.
+/// If λ₃ x is larger for neighbouring extremals of a candidate, the second variation of its samples must agree, and vice versa:
+/// two independent methods for the same verdict. One extremal is not a maximum: l₀ = l₁/2, χ = 1.2, backwards from 2.455 rad
+/// within 6.2 rad; it must fail.
 #[test]
 fn the_second_variation_agrees_with_the_neighbours() {
     let (mut maxima, mut others) = (0, 0);
@@ -58,8 +58,8 @@ fn the_second_variation_agrees_with_the_neighbours() {
     assert!(maxima >= 40 && others >= 1, "{maxima} {others}");
 }
 
-/// The larger gain in λ₃ x of the two extremals beside a candidate on its family; none where it is not on it, or both neighbours
-/// do not end.
+/// The larger gain in λ₃ x of the two neighbours of a candidate on its family. Returns `None` if it is not on the family, or if
+/// neither neighbour ends.
 fn neighbour_gain(search: &Search<'_>, family: &StartFamily, candidate: &Candidate) -> Option<f64> {
     const BESIDE: f64 = 1e-3;
     let first = candidate

@@ -71,7 +71,7 @@ const NODES: usize = 6;
 const PANELS: usize = 16;
 
 impl Legs {
-    /// None for a cycle that leads nowhere, or whose arcs are none.
+    /// Returns `None` for a cycle without displacement, or with invalid arcs.
     pub(crate) fn new(
         (model, members): (&Model<f64>, &[(Member, f64)]),
         region: &Region,
@@ -181,7 +181,7 @@ impl Legs {
         self.end[1].atan2(self.end[0]) - self.mean_theta
     }
 
-    /// How far, as a share, the servos are from the rates that their arcs ask for.
+    /// Largest relative deviation of the servo rates from those of their arcs.
     pub(crate) fn off_full_rate(&self) -> f64 {
         let mut worst: f64 = 0.0;
         for leg in &self.all {
@@ -239,7 +239,7 @@ impl<'a> Swum<'a> {
         })
     }
 
-    /// Its share of the height at a shape that the servos are told.
+    /// Weighted contribution of the member to the height at a commanded shape.
     fn height(&self, u: f64, phi: &Vector2<f64>) -> Height {
         let Member { model, gain, .. } = self.member;
         let momentum = Momentum {
@@ -265,7 +265,7 @@ pub(super) fn pose_at(panels: &[Panel<f64>], u: f64) -> [f64; 3] {
     })
 }
 
-/// The arcs of a gait: those that it tells, where they are the whole cycle.
+/// Arcs of a gait: those of the file, if they cover the whole cycle.
 pub(super) fn arcs(region: &Region, file: &GaitFile, gait: &AnyGait) -> Vec<GaitArc> {
     let told = file.arcs.iter().filter(|arc| arc.to > arc.from);
     let until = told.clone().try_fold(0.0, |until: f64, arc| {
@@ -278,7 +278,7 @@ pub(super) fn arcs(region: &Region, file: &GaitFile, gait: &AnyGait) -> Vec<Gait
     }
 }
 
-/// The arcs of a gait that does not tell them: from corner to corner.
+/// Arcs of a gait without listed arcs: from corner to corner.
 fn between_corners(region: &Region, file: &GaitFile, gait: &AnyGait) -> Vec<GaitArc> {
     let mut ends = file.corners.clone();
     if ends.first() != Some(&0.0) {

@@ -9,8 +9,8 @@ use super::legs::Legs;
 use super::switching::along;
 use super::{RESTS, on_bound};
 
-/// The least eigenvalue of the second variation of ln T − ln |d| where all equations of the arcs hold to first order; none where
-/// the arcs are none.
+/// The least eigenvalue of the second variation of ln T − ln |d| on the tangent space of the arcs' equations. Returns `None` for
+/// invalid arcs.
 pub(super) fn least(setting: &Setting, legs: &Legs) -> Option<f64> {
     let links: Option<Vec<Link>> = legs
         .all

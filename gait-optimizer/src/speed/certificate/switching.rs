@@ -30,7 +30,7 @@ pub(super) fn along(region: &Region, node: &Node) -> Option<(usize, Bound)> {
         .min_by(|(_, a), (_, b)| across(a).total_cmp(&across(b)))
 }
 
-/// What the least squares left.
+/// Switching functions with the multipliers of the least-squares fit.
 pub(crate) struct Switching<'a> {
     region: &'a Region,
     legs: &'a Legs,
@@ -99,7 +99,7 @@ impl<'a> Switching<'a> {
             });
         }
         if this.ends.iter().all(Option::is_none) {
-            // No switch tells the multipliers: the least height on the arcs does.
+            // Without a switch, the least height on the arcs determines the multipliers.
             for node in legs.all.iter().flat_map(|leg| leg.panels.iter().flatten()) {
                 rows.push(this.height(node).times(node.weight.sqrt()));
             }
@@ -142,7 +142,7 @@ impl<'a> Switching<'a> {
         slope
     }
 
-    /// What H leaves for Ω₁|σ₁| + Ω₂|σ₂| at a heading.
+    /// Ω₁|σ₁| + Ω₂|σ₂| at a heading, which follows from the constancy of H.
     fn speed(&self, theta: f64) -> Affine {
         Affine {
             weights: vec![(SPEED, 1.0), (HEADING, theta - self.legs.mean_theta)],
@@ -216,7 +216,7 @@ impl<'a> Switching<'a> {
         }
     }
 
-    /// How σ jumps at the corner before a leg: after less before.
+    /// Jump of σ at the corner before a leg: after minus before.
     fn jump(&self, k: usize) -> [Affine; 2] {
         let count = self.legs.all.len();
         let (before, after) = (self.sigma((k + count - 1) % count, 1), self.sigma(k, 0));
@@ -326,7 +326,8 @@ impl<'a> Switching<'a> {
         checks
     }
 
-    /// How far σ₁ and σ₂ of an extreme leg keep their signs, over their largest value: at both ends and at every panel between.
+    /// Least margin by which σ₁ and σ₂ of an extreme leg keep their signs, over their largest value, at both ends and at every
+    /// panel between.
     fn least_sign(&self, k: usize) -> Vec<f64> {
         let (Some(ends), leg) = (&self.ends[k], &self.legs.all[k]) else {
             return Vec::new();
@@ -361,7 +362,8 @@ impl<'a> Switching<'a> {
             / (slope.norm() * node.rate[pace].abs())
     }
 
-    /// How hard the bounds at the corner before a leg push back: the way out is worth more once they are behind.
+    /// Multipliers of the bounds at the corner before a leg: they are positive if leaving the bound is worth more beyond the
+    /// corner.
     fn jump_signs(&self, k: usize) -> Vec<f64> {
         let normals = self.normals(&self.legs.all[k].from);
         let jump = self.jump(k).map(|part| self.value(&part));

@@ -1,4 +1,4 @@
-//! What a chain of known arcs must meet, and how far it is from that: values, slopes and curvatures over its unknowns.
+//! Conditions of a chain of known arcs and their residuals: values, slopes and curvatures over its unknowns.
 
 use nalgebra::{DVector, Matrix2, Vector2};
 
@@ -67,7 +67,7 @@ pub(super) struct Conditions<'a> {
 }
 
 impl Conditions<'_> {
-    /// Equations of the whole chain: rotation, and heading and period where they are asked for.
+    /// Number of equations of the whole chain: rotation, and heading and period if they are prescribed.
     pub(super) fn global(&self) -> usize {
         self.setting.equality_count()
     }
