@@ -43,7 +43,7 @@ pub fn efficiency(problem: &EfficiencyProblem) -> Result<OptimalGait, Collocatio
             };
             Ok(efficiency_from(problem, &direct)?)
         })
-        // The best gait, or the first error if there is none.
+        // The best gait, or the first error if no start succeeds.
         .reduce(|best, next| match (&best, &next) {
             (Err(_), Ok(_)) => next,
             (Ok(gait), Ok(other)) if other.efficiency > gait.efficiency => next,

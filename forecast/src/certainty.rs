@@ -1,17 +1,17 @@
-//! How sure a forecast's displacement is, from what a calibration leaves open of `r_s` and χ.
+//! Uncertainty of a forecast's displacement, from the intervals of `r_s` and χ of a calibration.
 
 use swimmer_model::{InvalidSwimmer, Model, Swimmer, swim};
 
 use crate::losses::{Forecast, tolerance};
 
 impl Forecast {
-    /// Half width of the displacement's interval \[m\], along the designed displacement, at the level of the fit's intervals:
-    /// the played way swum by the swimmers at the ends of the intervals of `r_s` \[m\] and χ, the other parameter at the fitted
-    /// swimmer's, to first order, with the correlation of both estimates where the fit tells it. A sphere below nothing counts
-    /// as none.
+    /// Half width of the displacement's interval \[m\], along the designed displacement, at the level of the fit's intervals: the
+    /// played path integrated for the swimmers at the ends of the intervals of `r_s` \[m\] and χ, the other parameter at the
+    /// fitted value, to first order, with the correlation of both estimates if the fit reports it. A negative sphere radius
+    /// counts as 0.
     ///
     /// # Errors
-    /// An end at which there is no swimmer.
+    /// An end of an interval that is no valid swimmer.
     ///
     /// ```
     /// use forecast::{Played, Servos, forecast};

@@ -1,4 +1,4 @@
-//! What a gait asks of the servos in a fluid of known viscosity: torque and power, and whether inertia is small indeed.
+//! Load of the servos in a fluid of known viscosity: torque and power, and the Reynolds number as a check that inertia is small.
 
 use swimmer_files::Fluid;
 use swimmer_model::{Gait, Model};
@@ -6,7 +6,7 @@ use swimmer_model::{Gait, Model};
 /// Looks at a cycle.
 const LOOKS: u32 = 2000;
 
-/// What one cycle asks, with ideal servos, as the gait is parametrised.
+/// Load of one cycle with ideal servos, in the time parametrisation of the gait.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Demand {
     /// Mean over the cycle \[W\].
@@ -19,7 +19,7 @@ pub struct Demand {
     pub reynolds: f64,
 }
 
-/// What a cycle of `period` \[s\] asks in this fluid.
+/// Load of a cycle of `period` \[s\] in this fluid.
 ///
 /// ```
 /// use forecast::demand;

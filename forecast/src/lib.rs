@@ -1,16 +1,16 @@
-//! What a real robot makes of a gait: how fast its servos can run it, which angles they reach, and what is left of the
-//! displacement once a table, pulses, a rate limit and a dead band have had their share.
+//! Prediction of a gait on a real robot: its shortest period with the servos, the angles that they reach, and the displacement
+//! that remains after table, pulses, rate limit and dead band.
 //!
 //! All of it runs `gait-player`'s own table, playback, plant and table check, so that a forecast and the robot cannot disagree
 //! on arithmetic.
 //!
 //! - [`timing_of_table`]: a gait is a curve; its timing is free. The best timing under a rate limit, of the table that the robot
 //!   makes of it, and the shortest period.
-//! - [`table()`]: the table that a robot is given of a gait, its corners rounded.
-//! - [`reach()`]: the largest angle of a gait, with its place, against what the servos allow.
-//! - [`until_wall`]: how many cycles a tank has room for; [`Forecast::displacement_error`]: what a calibration leaves open.
-//! - [`plan()`]: gaits that join strung together to a target, walls respected; [`Planner`]: the same over and over, from cycle to
-//!   cycle.
+//! - [`table()`]: the table that the robot is sent for a gait, with rounded corners.
+//! - [`reach()`]: the largest angle of a gait, with its place, compared with the servos' limit.
+//! - [`until_wall`]: number of cycles that fit into a tank; [`Forecast::displacement_error`]: uncertainty due to the calibration.
+//! - [`plan()`]: a chain of joined gaits that leads to a target and keeps away from walls; [`Planner`]: the same repeatedly, from
+//!   cycle to cycle.
 //! - [`demand`]: torque, power and Reynolds number in a fluid of known viscosity.
 //! - [`forecast()`]: the displacement as designed, as stored, as commanded and as turned, loss by loss, before a gait is sent.
 //!

@@ -1,5 +1,5 @@
-//! What is left of a gait's displacement on a robot, before it is sent: the same table, brain arithmetic, pulses and servo
-//! plant that the robot plays it by ([`gait_player::playback`]), with one imperfection after the other switched on.
+//! Losses of a gait's displacement on the robot, predicted before it is sent: the same table, brain arithmetic, pulses and servo
+//! plant that the robot plays it by ([`gait_player::playback`]), with the imperfections switched on one by one.
 
 #![allow(
     clippy::cast_possible_truncation,
@@ -22,10 +22,10 @@ pub use gap::Gap;
 pub use servos::Servos;
 pub(crate) use stages::verdict;
 
-/// How a gait shall be played.
+/// Settings of a play.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Played {
-    /// By which servos.
+    /// Servos of the robot.
     pub servos: Servos,
     /// Duration of a cycle \[s\].
     pub period: f64,
@@ -33,7 +33,7 @@ pub struct Played {
     pub knots: usize,
 }
 
-/// Why nothing can be foretold.
+/// Reason why no forecast can be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ForecastError {
     /// The gait fits in no table.
@@ -49,7 +49,7 @@ pub enum ForecastError {
         .reach.joint + 1, .reach.angle, .reach.u
     )]
     Range {
-        /// Where the gait reaches furthest.
+        /// Place of the largest angle.
         reach: Reach,
         /// The servos' largest angle \[rad\].
         max_angle: f64,
@@ -57,19 +57,19 @@ pub enum ForecastError {
     /// No robot plays cycles of this period.
     #[error(transparent)]
     Period(#[from] UnplayablePeriod),
-    /// The servos' numbers are none.
+    /// A parameter of the servos is invalid.
     #[error("the servos' {name} is {value}; {problem}")]
     Servo {
-        /// Which number.
+        /// Name of the parameter.
         name: &'static str,
         /// Its value.
         value: f64,
-        /// What it must be.
+        /// Requirement that it violates.
         problem: &'static str,
     },
 }
 
-/// What becomes of a gait on its way to the servos' shafts.
+/// Stages of a gait on its way to the servos' shafts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Stage {
     /// The gait itself.
@@ -100,7 +100,7 @@ impl Stage {
         Self::Played,
     ];
 
-    /// What is lost in this stage, in a word for people and scripts.
+    /// Imperfection that this stage adds, in a word for people and scripts.
     pub fn word(self) -> &'static str {
         match self {
             Self::Designed => "designed",
@@ -127,26 +127,26 @@ pub struct Loss {
     pub delta_y: f64,
     /// Δθ \[rad\].
     pub delta_theta: f64,
-    /// What this imperfection takes from the displacement along the designed one \[m\]; negative where it adds. The losses of
-    /// all stages sum to the whole.
+    /// Loss of displacement along the designed displacement due to this imperfection \[m\]; negative for a gain. The losses of
+    /// all stages sum to the total loss.
     pub loss: f64,
-    /// What it adds to the net rotation \[rad\].
+    /// Its contribution to the net rotation \[rad\].
     pub turned: f64,
 }
 
-/// What the robot's own checks of the table say.
+/// Result of the robot's own checks of the table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Verdict {
-    /// Why the robot would refuse the table or the period; none where it plays.
+    /// Reason why the robot would refuse the table or the period; `None` if it plays.
     pub refused: Option<String>,
     /// The shortest period that it allows for this table \[s\].
     pub min_period: f64,
 }
 
-/// What a cycle will bring on the robot, in its steady state.
+/// Prediction of one cycle on the robot, in its steady state.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Forecast {
-    /// How it is played.
+    /// Settings of the play.
     pub played: Played,
     /// Stage by stage, in the order of [`Stage::ALL`].
     pub stages: Vec<Loss>,
@@ -154,19 +154,19 @@ pub struct Forecast {
     pub way: Polyline,
     /// The joint that turns furthest.
     pub reach: Reach,
-    /// Where the side links come closest on the way that the servos take.
+    /// Closest approach of the side links on the path that the servos take.
     pub gap: Gap,
-    /// Where they do on the designed curve.
+    /// Closest approach of the side links on the designed curve.
     pub designed_gap: Gap,
     /// Twice the half thickness of the links: centre lines that come closer mean plates that touch \[m\].
     pub thickness: f64,
     /// The margin that the robot keeps: one degree at the tip of the longer side link \[m\].
     pub margin: f64,
-    /// What the robot will say.
+    /// Result of the robot's checks.
     pub verdict: Verdict,
 }
 
-/// Thickness of the robot's plates \[m\], where the swimmer's drag does not tell a half thickness.
+/// Thickness of the robot's plates \[m\] if the swimmer's drag does not define a half thickness.
 const PLATE: f64 = 0.005;
 
 /// Thickness of a swimmer's plates \[m\]: centre lines that come closer mean plates that touch.
@@ -327,7 +327,7 @@ impl Forecast {
         })
     }
 
-    /// What to know before the gait is sent.
+    /// Warnings to read before the gait is sent.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
         let mm = |length: f64| length * 1e3;
@@ -362,7 +362,7 @@ impl Forecast {
 /// Net rotation a cycle that is worth a warning \[rad\]: a turn of one degree in ten cycles.
 const TURNING: f64 = 0.001_745;
 
-/// Integration of each stage: closer than the smallest loss that is told.
+/// Tolerance of the integration of each stage, below the smallest loss that is reported.
 pub(crate) fn tolerance() -> Tolerance {
     Tolerance::new(1e-10)
 }

@@ -1,4 +1,4 @@
-//! What a cycle brings, as answers tell it.
+//! Net motion of a cycle, as the JSON documents report it.
 
 use serde::Serialize;
 use swimmer_model::Stroke;
@@ -28,7 +28,7 @@ pub struct NetMotion {
     pub delta_y_over_length: f64,
     /// Δθ \[rad\].
     pub delta_theta_rad: f64,
-    /// As parametrised.
+    /// Efficiency in the gait's own time parametrisation.
     pub efficiency: f64,
     /// At constant power.
     pub efficiency_constant_power: f64,

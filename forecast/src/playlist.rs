@@ -1,9 +1,9 @@
-//! The tables that a robot is given of a playlist, and the path that its servos take through all of them.
+//! Tables that the robot is sent for a playlist, and the path that its servos take through all of them.
 //!
 //! Gaits of a playlist start and end at one shape. There each has a corner, which a table would round, each in its own way; so
-//! the joints stand at that shape for eight intervals of the table, and every table has it as its first knot, to the last
-//! digit. The robot has room for two tables and checks the next while one plays: a table that would be over before that is done
-//! takes in cycles of what follows.
+//! the joints stand at that shape for eight intervals of the table, and every table has it as its first knot, to the last digit.
+//! The robot stores two tables and checks the next while one plays: a table that would end before that check takes in cycles of
+//! the following one.
 
 #![allow(
     clippy::cast_possible_truncation,
@@ -24,7 +24,8 @@ use crate::path::Polyline;
 
 /// Share of a cycle at its start, and again at its end, in which the joints stand.
 const STAND: f64 = 4.0 / MAX_KNOTS as f64;
-/// A table lasts so long \[s\] where another follows it: sending and checking that one takes five at the robot's own speed.
+/// Shortest duration of a table that another one follows \[s\]: sending and checking that one takes five at the robot's own
+/// speed.
 pub const SHORTEST_S: f64 = 6.0;
 
 /// Cycles of one gait: a step of a playlist.
@@ -58,9 +59,9 @@ impl PlaylistTable {
     }
 }
 
-/// What rounding to the table's units may add to the change of an angle over an interval, by the cubic's weights \[rad\].
+/// Largest change of an angle over an interval due to rounding to the table's units, by the cubic's weights \[rad\].
 const ROUNDING: f64 = 1.3e-4;
-/// How far a rounded corner swings beyond the rates, and how far beyond its limit the robot lets a rate be.
+/// Overshoot of the rates at a rounded corner, over the robot's tolerance above its rate limit.
 const SWING: f64 = 1.0013 / 1.005;
 
 /// The shortest period of a step \[s\] of which the servos can play the gait in `shortest`: with the standing, and with the time
@@ -91,9 +92,9 @@ pub fn step_period(shortest: f64, max_rate: f64) -> f64 {
 ///
 /// let step = |cycles| Repeated { gait: AnyGait::circle(1.0), cycles, period: 4.0 };
 /// let sent = tables(&[step(10), step(1), step(3)]).unwrap();
-/// // A single cycle would be over too soon: one of the next step goes with it.
-/// let told: Vec<_> = sent.iter().map(|table| (table.cycles, table.period_us)).collect();
-/// assert_eq!(told, [(10, 4_000_000), (1, 8_000_000), (2, 4_000_000)]);
+/// // A single cycle would be over too soon: one of the next step is added to it.
+/// let cycles: Vec<_> = sent.iter().map(|table| (table.cycles, table.period_us)).collect();
+/// assert_eq!(cycles, [(10, 4_000_000), (1, 8_000_000), (2, 4_000_000)]);
 /// assert_eq!(sent[0].table.knot(0), sent[1].table.knot(0));
 /// ```
 pub fn tables<G: Gait<f64>>(steps: &[Repeated<G>]) -> Result<Vec<PlaylistTable>, TableError> {
@@ -101,7 +102,7 @@ pub fn tables<G: Gait<f64>>(steps: &[Repeated<G>]) -> Result<Vec<PlaylistTable>,
     let shape = steps
         .first()
         .map_or_else(Vector2::zeros, |step| step.gait.at(0.0).phi);
-    // What is too short to be a table of its own.
+    // Parts that are too short for a table of their own.
     let mut open: Vec<Part<'_, G>> = Vec::new();
     for (number, step) in steps.iter().enumerate() {
         let mut left = step.cycles;
@@ -168,7 +169,7 @@ fn table_of<G: Gait<f64>>(
 
 /// Cycles one after the other, each with its share of the time, the joints standing at both ends of the whole.
 struct Strung<'a, G> {
-    /// Where all start and end; they may name it with other last digits.
+    /// Common first and last shape; the gaits may name it with other last digits.
     shape: Vector2<f64>,
     cycles: Vec<(f64, f64, &'a G)>,
 }
@@ -289,7 +290,7 @@ pub fn steady_cycle(table: &GaitTable, period_us: u32, servos: &Servos) -> Vec<P
     points
 }
 
-/// Where a way of the joints leads, in the frame of the middle link at its start.
+/// Net pose of a path of the joints, in the frame of the middle link at its start.
 pub fn leads_to<G: Gait<f64> + ?Sized>(model: &Model<f64>, way: &G) -> Pose<f64> {
     let stroke = swim(model, way, &Tolerance::default());
     Pose::new(
@@ -299,7 +300,7 @@ pub fn leads_to<G: Gait<f64> + ?Sized>(model: &Model<f64>, way: &G) -> Pose<f64>
     )
 }
 
-/// Why a robot would refuse a table of a playlist; none where it plays all of them. With the step that the table begins with.
+/// Step and reason of the first table of a playlist that a robot would refuse. Returns `None` if it plays all of them.
 pub fn refused(
     tables: &[PlaylistTable],
     servos: &Servos,

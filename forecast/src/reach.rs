@@ -1,10 +1,10 @@
-//! The angles that a gait asks of the servos.
+//! Largest angles of a gait.
 
 use swimmer_model::Gait;
 
 use crate::timing::cuts;
 
-/// Where a gait turns a joint furthest.
+/// Place at which a gait turns a joint furthest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reach {
     /// The fraction of the period.

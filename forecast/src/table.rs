@@ -1,9 +1,9 @@
-//! The table that a robot is given of a gait: samples, with corners rounded.
+//! Table that the robot is sent for a gait: samples, with rounded corners.
 //!
-//! Where a gait has a corner a joint's rate jumps, and a cubic through knots on both sides swings beyond both rates, by up to a
-//! third: a gait that keeps within its servos' rate would make a table that is refused. A mean of neighbours with weights above
-//! zero is never faster than what it is a mean of. So the knots beside a corner are such means, with binomial weights over eight
-//! intervals: the cubic then swings beyond the rates by 0.13 % at most, and the corner is cut over a sixtieth of the cycle.
+//! At a corner of a gait a joint's rate jumps, and a cubic through knots on both sides overshoots both rates by up to a third: a
+//! gait within its servos' rate would make a table that is refused. A weighted mean of neighbours with positive weights is never
+//! faster than the neighbours. So the knots near a corner are such means, with binomial weights over eight intervals: the cubic
+//! then exceeds the rates by 0.13 % at most, and the corner is cut over a sixtieth of the cycle.
 
 use std::ops::RangeInclusive;
 
@@ -87,8 +87,7 @@ mod tests {
             let sampled = GaitTable::from_fn(knots, |u| square.at(u).phi.into()).unwrap();
             // Four sides of 3.2 rad at 1 rad/s.
             assert!(shortest(&sampled) > 1.14 * 12.8, "{knots}");
-            // The robot takes a rate for allowed that is a little above its limit; units of 1e-4 rad stand beside 0.025 rad
-            // between knots.
+            // The robot tolerates a rate slightly above its limit; rounding to 1e-4 rad is small against 0.025 rad between knots.
             let rounded = shortest(&table(&square, knots).unwrap());
             assert!(
                 (0.99..1.005).contains(&(rounded / 12.8)),

@@ -1,4 +1,4 @@
-//! How far a swimmer comes before it meets a wall of its tank.
+//! Number of cycles until a swimmer meets a wall of its tank.
 
 use nalgebra::Vector2;
 use swimmer_model::{Gait, Model, Pose, Swimmer, trajectory};
@@ -16,7 +16,7 @@ pub struct Tank {
 }
 
 impl Tank {
-    /// Whether a disc of this radius \[m\] has room here, from the tank's centre \[m\].
+    /// `true` if a disc of this radius \[m\] at this place, from the tank's centre \[m\], does not touch a wall.
     pub(crate) fn holds(&self, at: &Vector2<f64>, radius: f64) -> bool {
         at.x.abs() + radius < 0.5 * self.length && at.y.abs() + radius < 0.5 * self.width
     }
@@ -50,14 +50,14 @@ impl Part {
     }
 }
 
-/// Where a swimmer meets the wall.
+/// First contact of a swimmer with a wall.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Meeting {
-    /// Cycles until then, with the fraction of the last one; 0 where it does not fit into the tank at the start.
+    /// Cycles until then, with the fraction of the last one; 0 if it does not fit into the tank at the start.
     pub cycles: f64,
-    /// With what.
+    /// Part of the body that touches.
     pub part: Part,
-    /// Where, from the tank's centre \[m\].
+    /// Place of the contact, from the tank's centre \[m\].
     pub at: Vector2<f64>,
 }
 
@@ -82,7 +82,7 @@ const MOST_CYCLES: u32 = 90_000;
 ///     let tank = Tank { length, width: 1.0 };
 ///     until_wall(&model, &AnyGait::circle(1.2), &tank, &Pose::identity()).map(|meeting| meeting.cycles)
 /// };
-/// assert!(cycles(2.0).unwrap() > cycles(1.5).unwrap(), "a longer tank has room for more");
+/// assert!(cycles(2.0).unwrap() > cycles(1.5).unwrap(), "a longer tank fits more cycles");
 /// ```
 pub fn until_wall<G: Gait<f64> + ?Sized>(
     model: &Model<f64>,
@@ -127,8 +127,8 @@ pub fn until_wall<G: Gait<f64> + ?Sized>(
     None
 }
 
-/// Where a swimmer meets a wall that goes a way of the joints once, from a pose of its middle link; the cycles are the share of the
-/// way. It is looked at wherever the way bends.
+/// First contact with a wall of a swimmer that follows a path of the joints once, from a pose of its middle link. `cycles` is the
+/// fraction of the path. The body is checked at every vertex of the path.
 ///
 /// ```
 /// use forecast::{Part, Tank, meets_wall, path::Polyline};
@@ -139,7 +139,7 @@ pub fn until_wall<G: Gait<f64> + ?Sized>(
 /// let tank = Tank { length: 1.0, width: 0.6 };
 /// let bent = Polyline::new([Vector2::zeros(), Vector2::new(1.5, -1.5)]);
 /// assert!(meets_wall(&model, &bent, &tank, &Pose::new(0.0, 0.0, 0.0)).is_none());
-/// // Straight along a wall there is room, but not to bend.
+/// // Straight along a wall the swimmer fits; with bent joints it does not.
 /// let meeting = meets_wall(&model, &bent, &tank, &Pose::new(0.0, 0.195, 0.0)).unwrap();
 /// assert!(meeting.part == Part::BackTip && meeting.at.y > 0.3 && meeting.cycles > 0.0);
 /// ```

@@ -18,10 +18,10 @@
 //! t'(u) = max(τ(u), k p(u)),   k = 1/√λ,
 //! ```
 //!
-//! and ∫ max(τ, k p) du = T fixes k, because the left side grows with k, from ∫ τ du, **the shortest possible period**, at
-//! k = 0. (It is the water-filling of information theory: time is poured over the curve, onto a floor τ.) Without a limit
-//! k = T/∫p and the energy is (∫p)²/T, the constant-power value of the paper; Lighthill's ξ goes with 1/(E T), so the cap
-//! costs the share 1 − (∫p)²/(T E) of ξ.
+//! and ∫ max(τ, k p) du = T fixes k, because the left side grows with k, from ∫ τ du, **the shortest possible period**, at k = 0.
+//! (This is the water-filling solution of information theory, with lower bound τ.) Without a limit k = T/∫p and the energy is
+//! (∫p)²/T, the constant-power value of the paper; Lighthill's ξ is proportional to 1/(E T), so the cap costs the share 1 −
+//! (∫p)²/(T E) of ξ.
 
 mod error;
 mod table;
@@ -68,7 +68,7 @@ pub struct Timing {
     cells: Vec<Cell>,
 }
 
-/// Where a cell of the curve ends, and when.
+/// End of a cell of the curve, with its time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Cell {
     u: f64,
@@ -86,7 +86,7 @@ struct Sample {
 /// The shortest period \[s\] in which joints of at most these rates \[rad/s\] can run a gait: ∫ maxᵢ(|φᵢ'|/rᵢ) du.
 ///
 /// # Errors
-/// A rate that is none, or a gait that stands still.
+/// An invalid rate, or a gait that stands still.
 ///
 /// ```
 /// use forecast::shortest_period;
@@ -268,7 +268,7 @@ impl Timing {
     }
 }
 
-/// Where the cycle is cut, from 0 to 1: at the ends of the gait's pieces, and between where those are far apart.
+/// Subdivision of the cycle, from 0 to 1: the ends of the gait's pieces, and points between distant ends.
 pub(crate) fn cuts<G: Gait<f64> + ?Sized>(gait: &G) -> Vec<f64> {
     let mut cuts = vec![0.0];
     let mut start = 0.0;

@@ -16,14 +16,14 @@ const TANK: Tank = Tank {
 const MARGIN: f64 = 0.005;
 /// Of plates \[m\].
 const CLEARANCE: f64 = 0.0025;
-/// A target less than 2 mm from the wall, beyond the margin, where only the smallest cycles have room.
+/// A target less than 2 mm from the wall, beyond the margin, that only the smallest cycles can reach.
 const AT_A_WALL: ([f64; 2], f64) = ([-0.424_193_4, -0.099_542_5], 1.307_874_5);
 
 fn servos() -> Servos {
     Servos::on_the_robot(ServoFile::default())
 }
 
-/// Gaits that join where joining costs least, and gaits that join at the straight shape, for where there is no room to bend.
+/// Gaits joined at the shape with the least cost, and gaits joined at the straight shape, for places too narrow to bend.
 fn robot() -> &'static (Model<f64>, [Family; 2]) {
     static ROBOT: OnceLock<(Model<f64>, [Family; 2])> = OnceLock::new();
     ROBOT.get_or_init(|| {
@@ -190,7 +190,7 @@ fn a_target_without_room_to_bend_is_reached_straight() {
     reached_straight([-0.147, 0.215], -0.39);
 }
 
-/// Less than 2 mm from the wall only the smallest cycles have room, and a hundred of them hardly get away from it.
+/// Less than 2 mm from the wall only the smallest cycles fit, and a hundred of them hardly move away from it.
 #[test]
 fn a_target_at_a_wall_is_reached_by_many_small_cycles() {
     let (to, heading) = AT_A_WALL;

@@ -1,4 +1,4 @@
-//! A and W at 10 000 shapes a call, and with their derivatives one by one; what is told is the time of one shape.
+//! A and W at 10 000 shapes a call, and with their derivatives one by one; the result is the time per shape.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};

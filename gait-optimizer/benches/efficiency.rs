@@ -1,4 +1,4 @@
-//! How long a Lighthill gait takes, from swimmer to certificate, with no guess, free or followed to a bound.
+//! Duration of the search for a Lighthill gait, from swimmer to certificate, without a guess, free or continued to a bound.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use gait_optimizer::{Bounds, Branch, EfficiencyProblem, efficiency};

@@ -1,4 +1,4 @@
-//! How long a height map takes, frame and all.
+//! Duration of a height map with its frame.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use gait_optimizer::{HeightMap, Row};

@@ -1,4 +1,4 @@
-//! How long the fastest gait takes, from swimmer to certificate, on one thread.
+//! Duration of the search for the fastest gait, from swimmer to certificate, on one thread.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use gait_optimizer::{Bounds, SpeedProblem, fastest};

@@ -1,4 +1,4 @@
-//! How close the side links come to each other along a way.
+//! Closest approach of the side links along a path.
 
 use gait_player::clearance::{clearance, margin as robot_margin};
 use nalgebra::Vector2;
@@ -6,7 +6,7 @@ use swimmer_model::{Gait, Links};
 
 use crate::path::Polyline;
 
-/// Where the side links come closest.
+/// Closest approach of the side links.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gap {
     /// Distance between the centre lines of the side links \[m\] (or what a side link is from lying folded on the middle

@@ -100,7 +100,7 @@ pub(super) fn through(
     AnyGait::from_samples(&u, &phi, &[])
 }
 
-/// What the robot's own checks say of a table that is played by these servos.
+/// Result of the robot's own checks of a table that is played by these servos.
 pub(crate) fn verdict(
     table: &GaitTable,
     links: &Links<f64>,

@@ -112,7 +112,8 @@ fn the_curve_of_a_table_is_the_robots_interpolant() {
     }
 }
 
-/// What a coarse table gives by another way: swim the very knots' polygon of the robot's interpolant, finely chopped.
+/// Loss of a coarse table by an independent integration: the polygon of the robot's interpolant through the same knots, finely
+/// divided.
 #[test]
 fn a_coarse_table_by_another_integration() {
     let model = robot();

@@ -1,17 +1,17 @@
-//! Why a gait has no timing, and what of a request shows it at once.
+//! Errors of the timing, and checks of a request.
 
 use swimmer_model::InvalidSamples;
 
-/// Why a gait has no timing.
+/// Reason why a gait has no timing.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum TimingError {
-    /// A limit that is none.
+    /// The rate limit is not positive and finite.
     #[error("the servos' largest rate is {rate} rad/s; give a number above 0")]
     Rate {
         /// The rate \[rad/s\].
         rate: f64,
     },
-    /// A period that is none.
+    /// The period is not positive and finite.
     #[error("the period is {period} s; give a finite number above 0")]
     Period {
         /// The period \[s\].
@@ -23,7 +23,7 @@ pub enum TimingError {
          {shortest:.4} s; give a longer period or faster servos"
     )]
     TooFast {
-        /// The period asked for \[s\].
+        /// The requested period \[s\].
         period: f64,
         /// The servos' rate \[rad/s\].
         rate: f64,

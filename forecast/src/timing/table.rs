@@ -1,8 +1,7 @@
-//! Timing for the table: what the robot checks is not the curve but the cubics between the 512 knots of its table
-//! ([`crate::table()`]).
+//! Timing of the table: the robot checks not the curve but the cubics between the 512 knots of its table ([`crate::table()`]).
 //!
-//! They may be a little faster than the curve: by the rounding of their knots, and beside corners. Where they are, the fastest
-//! timing is stretched by as much; another one is left as it is unless its table is too fast.
+//! They may be slightly faster than the curve, by the rounding of their knots and near corners. If so, the fastest timing is
+//! stretched accordingly; any other timing is changed only if its table is too fast.
 
 #![allow(
     clippy::cast_possible_truncation,
@@ -103,7 +102,7 @@ fn shortest(
     Ok((curve, timing))
 }
 
-/// The period that the robot asks for the table of a timing, at least its own \[s\].
+/// Shortest period that the robot allows for the table of a timing, at least the timing's own \[s\].
 fn needed(timing: &Timing, file: &GaitFile, max_rate: f64) -> Result<f64, TimingError> {
     let limits = Limits {
         max_rate: max_rate as f32,

@@ -1,5 +1,5 @@
-//! Certificates from the curve alone: every optimum passes, nothing else does; and what a gait's samples cannot decide is told from
-//! what is wrong.
+//! Certificates from the curve alone: every optimum passes, nothing else does; and conditions that the samples leave undecided
+//! are distinguished from failures.
 
 use crate::changed;
 
@@ -119,7 +119,7 @@ fn bumped(file: &GaitFile, centre: f64) -> GaitFile {
     }
 }
 
-/// Written, read, run the other way, or (displacement) told without its arcs, it is the same gait; with a bump it is none.
+/// Written, read, reversed, or (displacement) without its arcs, it is the same gait; with a bump it fails.
 #[test]
 fn every_optimum_passes_and_with_a_bump_fails() {
     let gaits = gaits();
@@ -157,7 +157,7 @@ fn every_optimum_passes_and_with_a_bump_fails() {
             passes("silent", &silent);
         }
         if file.objective == Objective::Efficiency && free {
-            // What is best for efficiency is not best for displacement.
+            // The best gait for efficiency is not the best for displacement.
             let other = certify(&swimmer, &file, Objective::Displacement, &file.bounds);
             assert!(!other.unwrap().pass(), "{name}");
         }
@@ -184,8 +184,8 @@ fn a_sliver_between_bounds_leads_nowhere() {
     assert!(slivers > 0);
 }
 
-/// Where only links that may not cross bound the angles, gaits run along where a side link all but lies on the middle one: a hair
-/// off it, so that nothing crosses and what is listed passes.
+/// If the only bound is that links may not cross, gaits run close to the shape in which a side link lies on the middle one, at a
+/// tiny distance, so that nothing crosses and every listed gait passes.
 #[test]
 fn gaits_that_fold_a_link_keep_it_off_the_middle_one() {
     let long_sides = Swimmer {
@@ -267,8 +267,8 @@ fn sparse_samples_are_enough_or_say_so() {
     );
 }
 
-/// Swimmers with a short middle link race through some shapes, and their gaits have as many samples as the certificate from the
-/// file asks for.
+/// Swimmers with a short middle link move fast through some shapes, and their gaits have as many samples as the certificate from
+/// the file needs.
 #[test]
 fn gaits_of_short_middle_links_are_sampled_as_closely_as_is_asked() {
     let with = |middle| Swimmer {

@@ -102,7 +102,7 @@ fn without_a_heading_the_farther_gait_swims_forwards() {
         } else {
             &mut counter_clockwise
         }) += 1;
-        // As told of the counter-clockwise quarter.
+        // The values are those of the counter-clockwise quarter.
         assert_eq!(
             (&gait.arcs, gait.start_angle),
             (&papers.arcs, papers.start_angle)
@@ -199,7 +199,7 @@ fn a_tightening_bound() {
     assert!((square.displacement - swum.displacement.x).abs() < 1e-12);
 }
 
-/// Where the bound comes down to the start of the singular arc, 1.3985 rad, that arc shrinks and vanishes; the gait stays.
+/// As the bound decreases to the start of the singular arc, 1.3985 rad, that arc shrinks and vanishes; the gait persists.
 #[test]
 fn a_bound_that_meets_the_start() {
     let gaits = [
@@ -345,7 +345,7 @@ fn lower_bound_and_sector() {
     assert!(kinds(&d).contains(&ArcKind::Diagonal), "{:?}", d.arcs);
 }
 
-/// What is left of the gaits (b), (c) and (d) when links may not cross: (b) is untouched, (c) and (d) run along the bound.
+/// The gaits (b), (c) and (d) if links may not cross: (b) is unchanged, (c) and (d) run along the bound.
 #[test]
 fn the_papers_gaits_without_crossing_links() {
     let within = papers_b();
@@ -432,11 +432,12 @@ fn random_swimmers() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Pushes that ask the model alone for saddles.
+/// Perturbations in the independent search for saddles, which uses only the model.
 const HATS: usize = 96;
 
-/// Near a place where two zero-level curves are about to meet little holds the curve, and only narrow pushes there lead up: with even
-/// knots this saddle passed. The model alone says the same, and that other spheres' gaits are none.
+/// Near a place at which two zero-level curves are about to meet the curve is weakly determined, and only narrow perturbations
+/// gain: with even knots this saddle passed. The model alone confirms it, and also that the gaits of other spheres are no
+/// saddles.
 #[test]
 fn a_faint_saddle_is_refused() {
     let of = |sphere_radius: f64| {
@@ -464,7 +465,8 @@ fn a_faint_saddle_is_refused() {
     }
 }
 
-/// The best simple gaits of random swimmers, either way: optima and saddles as the model alone tells them, by second differences.
+/// The best simple gaits of random swimmers, in both directions: optima and saddles according to second differences of the model
+/// alone.
 fn saddles_of(cases: impl Iterator<Item = usize>) {
     let random = swimmers::random(20_260_703, 200);
     let (mut optima, mut saddles, mut wrong) = (0, 0, Vec::new());

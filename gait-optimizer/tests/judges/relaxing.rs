@@ -12,10 +12,10 @@ use gait_optimizer::{
 use swimmer_files::Bounds;
 use swimmer_model::Swimmer;
 
-/// What a search returns within some bounds.
+/// Result of a search within some bounds.
 #[derive(Debug, Clone, Copy, Default)]
 struct Solution {
-    /// Value of the gait; 0 if there is none.
+    /// Value of the gait; 0 without a gait.
     reached: f64,
     /// Largest value that is reported, certified or not.
     known: f64,

@@ -128,8 +128,8 @@ fn the_direct_method_agrees_on_gaits_that_join() {
 fn the_direct_method_agrees_on_other_gaits_that_join() {
     joined_by_two_methods(Swimmer::robot(), 2.8, [0.96, -1.84], [1e-6; 3]);
     joined_by_two_methods(Swimmer::purcell(), 2.8, [-1.64, -0.7], [1e-8; 3]);
-    // It does not come to rest at these sideways gaits, and finds none as fast from elsewhere: of the robot's it tells only that none
-    // is faster.
+    // It does not converge at these sideways gaits, and finds no gait as fast from elsewhere: for the robot it shows only that
+    // none is faster.
     let robots = [1e-8, f64::INFINITY, 1e-8];
     joined_by_two_methods(Swimmer::robot(), 2.0, [1.46, 0.56], robots);
     joined_by_two_methods(Swimmer::purcell(), 2.0, [-0.32, -1.32], [1e-8, 0.2, 1e-8]);
@@ -206,7 +206,8 @@ fn the_direct_method_agrees_everywhere() {
     }
 }
 
-/// By what shares something from random starts is faster than what is told: from ellipses of any place, size and tilt, with a second wave.
+/// Relative gains of the direct method over the result, from random starts: ellipses of any place, size and tilt, with a second
+/// wave.
 fn faster(pairs: usize, starts: usize, heading: HeadingRule, of_kind: Kind) -> Vec<f64> {
     // Where a heading is prescribed cycles of more corners may tack, and are faster.
     let sides = match heading {
@@ -218,7 +219,7 @@ fn faster(pairs: usize, starts: usize, heading: HeadingRule, of_kind: Kind) -> V
     for pair in 0..pairs {
         let max_angle = rng.random_range(1.2..3.1);
         let problem = problem(random_swimmer(&mut rng), max_angle, 0).led(heading);
-        // A polygon may come near a longer cycle, which is told as such.
+        // A polygon may approach a longer cycle, which is reported as such.
         let found = fastest(&problem).map(|found| {
             let longer = [found.longer, found.uncertified].into_iter().flatten();
             match heading {
@@ -421,8 +422,9 @@ impl Run {
     }
 }
 
-/// Why fastest means of so many corners where the heading is prescribed: a cycle may tack. It leads to one side of the heading so many
-/// times, turns, leads to the other side as often and turns back, the faster the less often it turns.
+/// If the heading is prescribed, the fastest gait is defined for a number of corners, because a cycle may tack: it leads to one
+/// side of the heading several times, turns, leads to the other side as often and turns back. It is faster the less often it
+/// turns.
 #[test]
 fn tacks_come_near_the_fastest_of_any_heading() {
     let swimmer = Swimmer::robot();
@@ -463,7 +465,7 @@ fn tacks_come_near_the_fastest_of_any_heading() {
     assert!(speeds.is_sorted() && speeds[4] < fastest && speeds[4] > 0.999 * fastest);
 }
 
-/// Many starts lead to faster cycles of more corners than are asked for. They must not end the search for the others.
+/// Many starts lead to faster cycles of more corners than requested. They must not end the search for the others.
 #[test]
 fn more_starts_are_never_slower() {
     let of = |starts| {

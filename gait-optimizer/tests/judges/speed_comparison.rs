@@ -1,5 +1,5 @@
-//! The gaits of the paper and of the efficiency atlas, run as fast as servos of the same rate can, beside the fastest gait within
-//! the same angles: none is faster.
+//! The gaits of the paper and of the efficiency atlas, run as fast as servos of the same rate allow, compared with the fastest
+//! gait within the same angles: none is faster.
 
 use gait_optimizer::{
     AtlasProblem, Bounds, Branch, DisplacementProblem, EfficiencyProblem, Objective, SimpleShape,

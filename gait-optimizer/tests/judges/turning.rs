@@ -317,8 +317,8 @@ fn a_blunt_corner_at_the_start_is_a_corner() {
     assert!(off < 1e-8, "{off:.1e}");
 }
 
-/// Where rounding puts the corner of the links' clearance on φ₁ = φ₂ does not decide where the cycle begins: all that depends on it
-/// is that of the smooth bound, whose clearance goes to zero.
+/// The start of the cycle does not depend on the rounding of the corner of the links' clearance on φ₁ = φ₂: all results are those
+/// of the smooth bound, whose clearance goes to zero.
 #[test]
 fn a_cycle_that_meets_the_diagonal_begins_there() {
     for swimmer in [Swimmer::robot_slender(), Swimmer::purcell()] {

@@ -1,5 +1,5 @@
-//! Swimmers and bounds of all kinds, asked for every objective but displacement (which `displacement.rs` asks): a certified
-//! gait or a reason, never a wrong gait, a hang or a panic.
+//! Swimmers and bounds of all kinds with every objective but displacement (see `displacement.rs`): a certified gait or a reason,
+//! never a wrong gait, a hang or a panic.
 
 use crate::swimmers;
 
@@ -18,12 +18,12 @@ use swimmer_files::{AnyGait, GaitFile};
 use swimmer_model::{Model, Tolerance, swim};
 use swimmers::{Apart, Case};
 
-/// The swimmers that displacement is asked with, too.
+/// The seed of the swimmers in the displacement tests.
 const SEED: u64 = 20_260_703;
 /// A case that takes longer hangs.
 const PATIENCE: Duration = Duration::from_mins(1);
 
-/// What a solver says.
+/// Result of a solver.
 enum Answer {
     Gaits(Vec<OptimalGait>),
     Reason { kind: String, text: String },
@@ -163,7 +163,7 @@ fn fastest_gait(case: &Case) -> Answer {
     }
 }
 
-/// What `certify` holds against a gait's file, if anything.
+/// Objection of `certify` to a gait's file, if any.
 fn refused(case: &Case, gait: &OptimalGait) -> Option<String> {
     let text = gait.gait_file("one").to_text();
     let read = GaitFile::parse(&text, Path::new("one.gait")).ok()?;
@@ -173,7 +173,7 @@ fn refused(case: &Case, gait: &OptimalGait) -> Option<String> {
     }
 }
 
-/// What is wrong with a gait, by its file, the real swimmer's model and distances of segments alone.
+/// Faults of a gait, by its file, the real swimmer's model and distances of segments alone.
 fn faults(case: &Case, gait: &OptimalGait) -> Vec<String> {
     let mut faults = Vec::new();
     if !gait.certificate.pass() {
@@ -242,7 +242,7 @@ fn ask((objective, solve): Kind, every: usize) {
         let begun = Instant::now();
         let (send, receive) = channel();
         let (name, of) = (case.name.clone(), case.clone());
-        // What hangs cannot be stopped, but left: the test fails at once.
+        // A thread that hangs cannot be stopped, but abandoned: the test fails at once.
         let solver = std::thread::spawn(move || send.send(solve(&of)));
         let answer = match receive.recv_timeout(PATIENCE) {
             Ok(answer) => answer,
@@ -305,7 +305,7 @@ fn ask((objective, solve): Kind, every: usize) {
     );
 }
 
-/// A kind of gait and who is asked for it.
+/// Kind of gait, with its solver.
 type Kind = (&'static str, fn(&Case) -> Answer);
 const SMALL: Kind = ("small", |case| most_efficient(case, Branch::Small));
 const LARGE: Kind = ("large", |case| most_efficient(case, Branch::Large));
@@ -331,7 +331,7 @@ fn some_of_each() {
     ask(THRIFTY, 67);
 }
 
-/// Every swimmer asked for a kind of gait: minutes each, part of the soak.
+/// A soak test over all swimmers for each kind of gait: minutes each.
 macro_rules! of_all {
     ($($name:ident: $kind:expr;)*) => { $(
         #[test]
@@ -342,8 +342,8 @@ macro_rules! of_all {
     )* };
 }
 
-// `certify` refuses none of the files: sharp turns are sampled as closely as its slopes ask for. For three swimmers (115, 117, 144) the
-// few starts here find saddles alone, which the atlas does not list; more starts find optima.
+// `certify` refuses none of the files: sharp turns are sampled as closely as its slopes need. For three swimmers (115, 117, 144)
+// the few starts here find only saddles, which the atlas does not list; more starts find optima.
 of_all! {
     small_gaits_of_all: SMALL;
     large_gaits_of_all: LARGE;

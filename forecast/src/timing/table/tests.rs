@@ -7,7 +7,7 @@ use gait_player::table::check::Checker;
 use swimmer_files::Bounds;
 use swimmer_model::{Gait as _, Links, Swimmer, Tolerance, swim};
 
-/// What the robot's whole check says of the table of a file: the shortest period that it allows \[µs\], and whether it allows
+/// Result of the robot's complete check of the table of a file: the shortest period that it allows \[µs\], and whether it allows
 /// this one.
 fn robots_word(file: &GaitFile, period: f64, max_rate: f64) -> (u32, bool) {
     let gait = AnyGait::from_file(file).unwrap();

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use rand::{Rng, RngExt};
 use swimmer_files::{GaitArc, GaitFile};
 
-/// Every number with so many digits behind the point.
+/// Rounds every number to this number of digits after the point.
 pub(crate) fn rounded(file: &GaitFile, digits: i32) -> GaitFile {
     let scale = 10.0_f64.powi(digits);
     let round = |value: f64| (value * scale).round() / scale;
@@ -25,7 +25,7 @@ pub(crate) fn rounded(file: &GaitFile, digits: i32) -> GaitFile {
     }
 }
 
-/// How much a gait is changed, where, and over which share of the cycle.
+/// Perturbation of a gait: size, centre and width as a fraction of the cycle.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Change {
     size: f64,

@@ -33,7 +33,7 @@ pub(crate) struct Direct {
     max_angle: f64,
     apart: Option<Apart>,
     nodes: Vec<Node>,
-    /// Whether the side after each node follows the border of the shapes with links apart.
+    /// `true` if the side after the node follows the border of the shapes with links apart.
     on_border: Vec<bool>,
 }
 
@@ -127,7 +127,7 @@ impl Direct {
         self.on_border.push(on_border);
     }
 
-    /// Where a node gets when it moves by t.
+    /// Position of a node that moves by t.
     fn moved(&self, node: &Node, t: f64) -> Vector2<f64> {
         match (node.way, &self.apart) {
             (Way::Ray(ray), _) => node.at + ray * t,
@@ -292,7 +292,7 @@ impl Direct {
     }
 }
 
-/// How the corner between two arcs may move: along the bound that one of them runs along; not at all between two bounds.
+/// Admissible motion of the corner between two arcs: along the bound that one of them runs along; fixed between two bounds.
 fn corner(before: &gait_optimizer::Arc, after: &gait_optimizer::Arc) -> Way {
     let bound = match (before.kind, after.kind) {
         (ArcKind::Singular, ArcKind::Clearance) | (ArcKind::Clearance, ArcKind::Singular) => {

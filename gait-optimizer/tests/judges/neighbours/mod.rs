@@ -1,5 +1,5 @@
-//! Whether a closed gait carries farther than its neighbours, asked of the model alone: second differences of |d| of a polygon through
-//! the gait's samples, as hats push it along its free arcs. From the model it takes A(Φ), from the library the samples.
+//! Comparison of a closed gait with its neighbours by the model alone: second differences of |d| of a polygon through the gait's
+//! samples, perturbed by hats along its free arcs. From the model it takes A(Φ), from the library the samples.
 
 use gait_optimizer::{ArcKind, OptimalGait};
 use nalgebra::{DMatrix, DVector, Vector2};
@@ -90,7 +90,7 @@ impl Neighbours {
         (alike - value(1.0, -1.0) - value(-1.0, 1.0)) / (4.0 * H * H)
     }
 
-    /// Hats over about so many knots: half of them even along the free arcs, half where little holds the curve.
+    /// About `count` hats: half of them spaced evenly along the free arcs, half by the softness of the curve.
     fn hats(&self, count: usize) -> Vec<Push> {
         let every: Vec<Push> = self
             .free
@@ -98,7 +98,7 @@ impl Neighbours {
             .flat_map(|arc| arc.clone().map(|at| vec![(at, 1.0)]))
             .collect();
         let c = self.multiplier(&every);
-        // How far a corner must be pushed to lose as much as others.
+        // Displacement of a corner that loses as much as that of the others.
         let loose = |at: usize| {
             let width = (self.corners[at + 1] - self.corners[at - 1]).norm();
             let push = vec![(at, 1.0)];
@@ -137,8 +137,8 @@ impl Neighbours {
         hats
     }
 
-    /// The largest eigenvalue of the second differences among pushes that turn nothing, each hat scaled to its own. Below zero where no
-    /// neighbour carries farther; none where next to nothing is free.
+    /// The largest eigenvalue of the second differences among perturbations without rotation, each hat scaled by its own.
+    /// Negative if no neighbour moves farther. Returns `None` with fewer than two hats.
     pub(crate) fn steepest(&self, count: usize) -> Option<f64> {
         let hats = self.hats(count);
         if hats.len() < 2 {

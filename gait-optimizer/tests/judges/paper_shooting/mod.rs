@@ -13,7 +13,7 @@ const STEPS: usize = 768;
 /// Jacobi's determinant is looked at this often.
 const LOOKS: usize = 48;
 
-/// What the paper's method says of a gait that it starts from.
+/// Result of the paper's method for a gait that it starts from.
 #[derive(Debug)]
 pub(crate) struct Shot {
     /// φ₁, x, θ and E at `t_f`.
@@ -26,7 +26,7 @@ pub(crate) struct Shot {
     pub(crate) bend: f64,
 }
 
-/// Newton's method from the final values of a gait; none where it does not converge.
+/// Newton's method from the final values of a gait. Returns `None` if it does not converge.
 pub(crate) fn shoot(model: &Model<f64>, start: Vector4<f64>) -> Option<Shot> {
     let mut at_end = start;
     for _ in 0..12 {

@@ -1,5 +1,5 @@
-//! Poses in the plane, one after the other, and what a straight side in the plane of joint angles brings: what the direct methods
-//! share beside the model's A.
+//! Composition of planar poses, and the pose of a straight side in the plane of joint angles: shared by the direct methods, which
+//! take nothing but A from the model.
 
 use std::ops::Mul;
 
@@ -32,7 +32,7 @@ const STEP: f64 = 0.15;
 const ROOT: f64 = 3.872_983_346_207_417;
 
 impl Pose {
-    /// Where a Gauss step of order six asks for rates, and what they weigh.
+    /// Nodes and weights of a Gauss step of order six.
     pub(crate) const NODES: [f64; 3] = [0.5 - ROOT / 10.0, 0.5, 0.5 + ROOT / 10.0];
     pub(crate) const WEIGHTS: [f64; 3] = [5.0 / 18.0, 4.0 / 9.0, 5.0 / 18.0];
     const UP_TO: [[f64; 3]; 3] = [

@@ -9,7 +9,7 @@ pub(super) struct Slack {
 }
 
 impl Slack {
-    /// How it changes along a step.
+    /// Its change along a step.
     pub(super) fn along(&self, step: &DVector<f64>) -> f64 {
         self.slopes
             .iter()

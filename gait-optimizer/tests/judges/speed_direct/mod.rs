@@ -1,9 +1,9 @@
 //! An independent direct method for the fastest gait: a polygon whose corners and times are free.
 //!
-//! Of many swimmers with one gait it climbs the weighted sum of displacements. From the model it takes A(Φ) alone. Slopes
-//! are differences of the swum polygon, second derivatives differences of the slopes; nothing is known of arcs, heights or switching
-//! functions. Limits by a primal–dual barrier, the rotation, and the heading where it is asked for, by an augmented Lagrangian. Where
-//! the fastest gait is a polygon, so where it has no singular arc, this is exact.
+//! For several swimmers with one gait it maximises the weighted sum of displacements. From the model it takes A(Φ) alone. Slopes
+//! are differences of the integrated polygon, second derivatives differences of the slopes; nothing is known of arcs, heights or
+//! switching functions. Limits are handled by a primal–dual barrier, the rotation and a prescribed heading by an augmented
+//! Lagrangian. If the fastest gait is a polygon, that is, without a singular arc, this is exact.
 
 mod limits;
 mod swum;
@@ -20,11 +20,11 @@ const FINE: f64 = 1e-5;
 const COARSE: f64 = 1e-4;
 /// The gap of the answer is this times the limits that are active, about as many as there are unknowns.
 const LAST_BARRIER: f64 = 1e-11;
-/// Of the rotation beside its multiplier.
+/// Penalty weight of the rotation in the augmented Lagrangian.
 const PRICE: f64 = 300.0;
 const MOST_STEPS: usize = 300;
 pub(crate) struct Direct {
-    /// Whose rotation vanishes, then the others; each with what its servos turn over what they are told.
+    /// Swimmers with the gain of their servos: actual over commanded angle. The rotation of the first one vanishes.
     swimmers: Vec<(Model<f64>, f64)>,
     /// Of their displacements.
     weights: Vec<f64>,
@@ -37,9 +37,9 @@ pub(crate) struct Direct {
     lambda: f64,
     /// A corner that stays.
     held: Option<usize>,
-    /// Whether the rotation is climbed, which need not vanish then.
+    /// `true` to maximise the rotation, which need not vanish then.
     turning: bool,
-    /// Where the displacement shall lead against the mean heading, modulo half a turn, and its multiplier.
+    /// Prescribed direction of the displacement against the mean heading, modulo half a turn, and its multiplier.
     heading: Option<(f64, f64)>,
 }
 
@@ -47,7 +47,7 @@ pub(crate) struct Direct {
 struct Side {
     here: Poses,
     moved: [[Poses; 2]; 4],
-    /// In a little more time, and in a little less, where the heading is asked for.
+    /// In slightly more and slightly less time, for a prescribed heading.
     timed: Option<[Poses; 2]>,
 }
 
@@ -270,7 +270,7 @@ impl Direct {
         self.worth(&whole) + self.period(z).ln() - barrier * logs
     }
 
-    /// Climbs; |d|/(L T) of the polygon, whose rotation vanishes, or |Δθ|/T; none where it does not come to rest.
+    /// Maximises; returns |d|/(L T) of the polygon, whose rotation vanishes, or |Δθ|/T. Returns `None` if it does not converge.
     pub(crate) fn climb(&mut self) -> Option<f64> {
         let mut barrier = 1e-2;
         let mut damping = 0.0_f64;
@@ -305,7 +305,7 @@ impl Direct {
                     met &= off.abs() < 1e-8;
                 }
                 if barrier <= LAST_BARRIER && met {
-                    // What is left of the rotation and the heading is priced to first order.
+                    // The residuals of rotation and heading are priced to first order.
                     return Some(self.distance(&whole) / self.period(&self.z) * (-left).exp());
                 }
                 barrier = (0.2 * barrier).min(barrier.powf(1.4)).max(LAST_BARRIER);

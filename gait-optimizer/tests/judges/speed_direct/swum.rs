@@ -24,7 +24,7 @@ impl Poses {
         }
     }
 
-    /// Each with what its servos turn over what they are told; in this time, where the heading is asked for.
+    /// Poses of each swimmer along a straight side, with the gain of its servos; in this time, if the heading is prescribed.
     pub(super) fn along(
         swimmers: &[(Model<f64>, f64)],
         ends: [Vector2<f64>; 2],

@@ -14,7 +14,7 @@ impl Apart {
         Self { links, clearance }
     }
 
-    /// Whether the side links do not cross and keep the clearance.
+    /// `true` if the side links do not cross and keep the clearance.
     pub(crate) fn allows(&self, phi: &Vector2<f64>) -> bool {
         self.links.overlap(phi) <= 1e-12 && self.distance(phi) >= self.clearance - 1e-12
     }
