@@ -1,4 +1,5 @@
-//! How fast: wide files read, poses of them, fits of six runs, and a recording of twenty minutes from its bytes to the fit.
+//! Durations of reading wide files, of their poses, of fits of six runs, and of a recording of twenty minutes from its bytes to
+//! the fit.
 
 #[path = "../tests/campaigns/tank/mod.rs"]
 mod tank;

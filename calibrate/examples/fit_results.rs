@@ -3,7 +3,7 @@
 use calibrate::{CampaignData, FitOptions, assess, calibrate_campaign};
 use swimmer_files::Campaign;
 
-/// Three circles of the paper's robot, as a figure might tell them, rounded to a tenth of a millimetre.
+/// Three circles of the paper's robot, as read off a figure, rounded to a tenth of a millimetre.
 const TOLD: &str = r#"
 swimmer = "robot"
 [[run]]

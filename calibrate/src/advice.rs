@@ -49,7 +49,7 @@ fn readable<S: Serializer>(gait: &GaitSpec, serializer: S) -> Result<S::Ok, S::E
 pub struct Advice {
     /// One cycle \[s\], as most runs had it.
     pub period_s: f64,
-    /// The most telling first.
+    /// The most informative first.
     pub candidates: Vec<Candidate>,
 }
 
@@ -176,7 +176,7 @@ impl Known {
                 counts[row % QUANTITIES] += 1.0;
             }
         }
-        // What no run has, one more will not have either.
+        // A quantity that no run has is missing in a further run, too.
         for (variance, count) in variances.iter_mut().zip(counts) {
             *variance = if count > 0.0 {
                 *variance / count

@@ -141,7 +141,7 @@ fn begun<'a>(
     campaign.included().filter_map(begin).collect()
 }
 
-/// Which runs swim against this model.
+/// For each run, the evidence that it swims against this model.
 fn opposed(
     runs: &[EitherRun<'_>],
     cycles: &[Cycles],

@@ -260,7 +260,7 @@ impl Clock {
         Ok(())
     }
 
-    /// Where whole cycles may lie \[s\].
+    /// Interval in which whole cycles may lie \[s\].
     fn window(&self, track: &PoseTrack) -> (f64, f64) {
         let ends = track.samples.first().zip(track.samples.last());
         match ends.filter(|_| self.starts.has_log()) {

@@ -28,7 +28,7 @@ pub struct RunData {
     pub gait_name: String,
     /// One cycle as commanded \[s\].
     pub period_s: f64,
-    /// Which point the front reflector is, where it is not as for the other runs.
+    /// Point of the front reflector, if it differs from the other runs.
     pub front: Option<PointName>,
     /// When its cycles began, where that is known.
     pub timing: Timing,

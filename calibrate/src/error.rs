@@ -119,7 +119,7 @@ pub enum FitError {
     /// One of X, ΔY, Δθ is zero in all runs, so the criterion is undefined.
     #[error("{quantity} is zero in all runs, so the criterion cannot be scaled by it")]
     NothingMeasured {
-        /// Which one.
+        /// Name of the quantity.
         quantity: &'static str,
     },
     /// X has the other sign than the model's in too many runs.

@@ -1,11 +1,11 @@
 //! Likelihood, profiles and bootstrap of r_s and χ, computed on demand from a finished fit.
 //!
-//! Beside the paper's criterion, which weighs all runs alike, stands a likelihood: each X, ΔY and Δθ has a variance of its own,
-//! from the cycles of its run and from what differs from run to run (`fit/components.rs`). From it come a second estimate, profiles,
-//! the ridge between r_s and χ, and outliers; from the paper's criterion the cycle bootstrap; from both what hangs on a single
-//! run.
+//! In addition to the paper's criterion, which weighs all runs alike, a likelihood is maximised: each X, ΔY and Δθ has a variance
+//! of its own, from the cycles of its run and from the scatter between runs (`fit/components.rs`). From the likelihood follow a
+//! second estimate, profile likelihoods, the ridge between r_s and χ, and outliers; from the paper's criterion the cycle
+//! bootstrap; from both the influence of single runs.
 //!
-//! All of it is asked of polynomials in (r_s, ln χ) through the model's answers (`surface.rs`), whose error is stated.
+//! All of it is computed from polynomials in (r_s, ln χ) that interpolate the model (`surface.rs`) with a known error.
 
 mod bootstrap;
 mod curves;
@@ -31,7 +31,7 @@ use surface::Surface;
 pub struct EvidenceOptions {
     /// Draws of the bootstrap.
     pub draws: usize,
-    /// Where their chance comes from.
+    /// Seed of their random numbers.
     pub seed: u64,
 }
 
@@ -83,7 +83,7 @@ pub struct Likelihood {
     /// The estimate, outliers left out.
     #[serde(flatten)]
     pub estimate: Pair,
-    /// Where the profile likelihoods fall to Student's threshold.
+    /// Ends of the profile likelihoods at Student's threshold.
     pub intervals: Intervals,
     /// Standard deviation from run to run of X \[m\], ΔY \[m\] and Δθ \[rad\], beyond what cycles explain.
     #[serde(skip)]
@@ -124,7 +124,7 @@ impl RunError {
 pub struct Profile {
     /// The parameter (m, or χ) and log-likelihood less its largest value, the other parameter set free.
     pub points: Vec<(f64, f64)>,
-    /// Where the interval ends: −t²/2 of Student's t.
+    /// Threshold at the ends of the interval: −t²/2 of Student's t.
     pub threshold: f64,
     /// The interval.
     pub interval: [f64; 2],
@@ -162,7 +162,7 @@ pub struct Contour {
 /// The bootstrap of the paper's fit, by runs and cycles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CycleBootstrap {
-    /// Where the draws came from.
+    /// Seed of the draws.
     pub seed: u64,
     /// Number.
     pub draws: usize,
@@ -177,7 +177,7 @@ pub struct CycleBootstrap {
 /// Both fits without one run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WithoutRun {
-    /// Which run, in the campaign's order.
+    /// Index of the run, in the campaign's order.
     pub run: usize,
     /// By the paper's criterion.
     pub paper: Pair,
@@ -188,9 +188,9 @@ pub struct WithoutRun {
 /// A value that the other ones do not expect. It is left out of the likelihood, never of the paper's criterion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Outlier {
-    /// Which run, in the campaign's order.
+    /// Index of the run, in the campaign's order.
     pub run: usize,
-    /// Which of its values.
+    /// Quantity of the run.
     pub quantity: Quantity,
     /// Measured less what all others predict \[m or rad\].
     pub deviation: f64,

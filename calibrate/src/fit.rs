@@ -2,8 +2,8 @@
 //! q = ((simulated − measured)/max measured)², w_x = 0.5 and w_y = w_θ = 0.25.
 //!
 //! It is the least squares (`least_squares.rs`) of a model of the runs (`run_model.rs`) with two parameters, r_s/L ≥ 0 and ln χ,
-//! and fixed weights; what else may be off is more parameters of the same model, the likelihood the same squares with weights
-//! that the data tell (`likelihood.rs`).
+//! and fixed weights. Nuisance parameters are further parameters of the same model; the likelihood has the same squares with
+//! weights estimated from the data (`likelihood.rs`).
 //!
 //! Intervals are Student's t, with the variances of what goes into the fit: between the cycles of a run (`errors.rs`) and
 //! from run to run (`components.rs`), and Satterthwaite's degrees of freedom. They are the ones that were chosen by counting:
@@ -114,20 +114,20 @@ pub enum FitWarning {
     },
     /// The optimum has no sphere.
     NoSphere,
-    /// One value is unlike what the other runs say.
+    /// One value deviates from those of the other runs.
     Outlier {
-        /// Which run, in the campaign's order.
+        /// Index of the run, in the campaign's order.
         run: usize,
-        /// Which of its values.
+        /// Quantity of the run.
         quantity: &'static str,
-        /// By how many standard errors.
+        /// Deviation in standard errors.
         standard_errors: f64,
     },
     /// Another dead band would explain the runs much better.
     DeadBand {
-        /// As the swimmer file says \[rad\].
+        /// Value of the swimmer file \[rad\].
         known: f64,
-        /// As the runs say \[rad\].
+        /// Estimate of the runs \[rad\].
         found: f64,
         /// Gain in log-likelihood.
         gain: f64,
@@ -136,9 +136,9 @@ pub enum FitWarning {
     },
     /// Another servo gain would explain the runs much better.
     Gain {
-        /// As the runs say.
+        /// Estimate of the runs.
         found: f64,
-        /// Growth of the log-likelihood.
+        /// Gain in log-likelihood.
         gain: f64,
         /// Explanation that fits nearly as well, and its deviation.
         rival: Option<(&'static str, f64)>,

@@ -4,10 +4,10 @@
 //! bytes ──read_tracks──► TrackFile ──poses──► PoseTrack ──► Cycles ──► Fit: r_s, χ, intervals, residuals
 //!          (tracks)                 (poses)             (cycles)    (fit)
 //! ```
-//! Where reflectors on the side links show the joint angles, the model swims these instead of the command (`joints`).
-//! [`weigh_evidence`] then tells, on demand, what the data say beyond the fit: likelihood, profiles, ridge, bootstrap, outliers;
-//! [`fit_further`] fits what else may be off, [`assess`] says whether the answer can be used, and [`advise`] what to measure next.
-//! Lengths are metres, angles radians, times seconds. Nothing here opens a file, except [`CampaignData::load`] and
+//! If reflectors on the side links measure the joint angles, the model follows these instead of the command (`joints`).
+//! [`weigh_evidence`] computes, on demand, likelihood, profiles, ridge, bootstrap and outliers; [`fit_further`] fits nuisance
+//! parameters, [`assess`] judges if the result can be used, and [`advise`] proposes further runs. Lengths are metres, angles
+//! radians, times seconds. Nothing here opens a file, except [`CampaignData::load`] and
 //! [`load_run`], which read what the caller names. [`predict`] is the model's side of the fit, for anyone who wants to know
 //! beforehand what the cameras will see.
 //!

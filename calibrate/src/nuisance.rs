@@ -24,7 +24,7 @@ pub enum Further {
     JointOffsets,
     /// The servos' dead band.
     DeadBand,
-    /// Where the reflectors' middle sits on the middle link, along and across.
+    /// Offset of the reflectors' middle on the middle link, along and across.
     MarkerOffset,
     /// Gain of both servos (angle per commanded angle).
     Gain,
@@ -121,7 +121,7 @@ pub struct FittedParameter {
     pub value: f64,
     /// Its interval: Student's t, within the bounds.
     pub interval: [f64; 2],
-    /// Where it was looked for.
+    /// Bounds of the search.
     pub bounds: [f64; 2],
 }
 
@@ -284,7 +284,7 @@ const DEAD_BANDS: [f64; 3] = [0.03, 0.09, 0.18];
 /// sways nearly as much, so that there are two minima.
 const MARKERS: [f64; 2] = [-0.5, 0.5];
 
-/// Where a search begins, more than once for what has more than one minimum.
+/// Starting points of the search, several for parameters with more than one minimum.
 fn starts(model: &RunModel, begun: &[f64]) -> Vec<Vec<f64>> {
     let mut starts = vec![begun.to_vec()];
     for (place, (parameter, (_, high))) in model.parameters.iter().zip(model.bounds()).enumerate() {

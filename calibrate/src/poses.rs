@@ -5,8 +5,8 @@
 //! 2. [`Plane`] is fitted to all of their positions and gives the tank's x and y.
 //! 3. Two points in the plane and their places on the link give the link's centre and heading.
 //!
-//! Gaps of at most [`PoseOptions::longest_fill_s`] are filled by a monotone cubic, which also takes the place of the samples
-//! beside them, since those are not trusted; all are marked ([`Origin`]). Cycles use them: a harmonic curve leaves a rest of a
+//! Gaps of at most [`PoseOptions::longest_fill_s`] are filled by a monotone cubic, which also replaces the neighbouring samples,
+//! since those are not reliable; all are marked ([`Origin`]). Cycles use them: a harmonic curve leaves a residual for a
 //! gait with corners, and where samples are missing that rest does not average out. Longer gaps stay gaps.
 
 mod assembly;
@@ -57,7 +57,7 @@ impl Default for PoseOptions {
 }
 
 impl PoseOptions {
-    /// As usual, but never over more than a tenth of a period \[s\].
+    /// The default, limited to a tenth of a period \[s\].
     pub fn of_period(period_s: f64) -> Self {
         let usual = Self::default();
         Self {
@@ -163,7 +163,7 @@ pub struct PoseTrack {
     pub plane: Plane,
     /// Report on following the reflectors.
     pub report: FollowReport,
-    /// Where the pose jumps: nothing that spans one of these is a measurement.
+    /// Frame jumps: an interval that contains one of these is not a measurement.
     pub jumps: Vec<Jump>,
     /// Motion of the robot while it rests before or after its cycles, by the fluid.
     pub drift: Option<Drift>,
@@ -199,7 +199,7 @@ impl PoseTrack {
         self.samples.iter().filter(move |s| s.origin == origin)
     }
 
-    /// Where a reflector is the one nearer to a place, takes that for its end.
+    /// If a reflector is given as the one nearer to a place, takes that one for its end.
     fn settle_by_place(&mut self, reflectors: &Reflectors, first: &Seen) {
         let nearer = |place: [f64; 2]| {
             let to = |point: &Vector2<f64>| (point - Vector2::from(place)).norm();

@@ -81,7 +81,7 @@ pub struct PredictedCycle {
 /// let robot = SwimmerFile::preset("robot").unwrap();
 /// let circle = AnyGait::circle(1.2);
 /// let cycle = predict(&robot, &circle, 30.0).unwrap();
-/// // The preset has ideal servos: what is left is the robot's table.
+/// // The preset has ideal servos: the difference is due to the robot's table.
 /// let designed = swim(&Model::new(&robot.swimmer).unwrap(), &circle, &Tolerance::default());
 /// assert!((cycle.x_m / designed.displacement.x - 1.0).abs() < 1e-3);
 /// ```
@@ -332,12 +332,13 @@ pub(crate) struct Played {
     pub(crate) cut_by: Option<Harmonics>,
     /// Direction and place of its cycles, if it was tracked.
     pub(crate) view: Option<View>,
-    /// Where reflectors showed `path`: it holds for its cycles as they were cut, and servos have no part in it.
+    /// Measured angles of `path`, if reflectors showed it: it is valid for its cycles as they were cut, and the servo model is
+    /// not used.
     pub(crate) sides: Option<Sides>,
 }
 
 impl Played {
-    /// As commanded: no reflector showed it yet.
+    /// The commanded path, without measured angles.
     ///
     /// # Errors
     /// As [`JointPath::new`].

@@ -217,8 +217,8 @@ impl<'a> Run<'a> {
             })
     }
 
-    /// Where no label tells front from back, the direction of travel does: X has the model's sign. And where log or flash told
-    /// when cycles began, the heading may object.
+    /// Without labels for front and back, the direction of travel decides: X has the model's sign. If log or flash give the
+    /// starts of cycles, the heading may contradict.
     pub(crate) fn settled(
         &mut self,
         start_s: f64,

@@ -1,4 +1,4 @@
-//! Where the side links' reflectors sit, as far as errors of other places show in the angles.
+//! Positions of the side links' reflectors, as far as errors of them show in the angles.
 
 use nalgebra::Vector2;
 use swimmer_files::Reflectors;

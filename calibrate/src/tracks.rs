@@ -143,7 +143,7 @@ pub struct TrackFile {
     /// The time of each row \[s\]: frame number over rate where the header gives one (time columns are rounded), else the
     /// file's own stamps.
     pub times: Vec<f64>,
-    /// Which of the file's axes are the tank's x and y, where the user or the format (images: y runs down) says so.
+    /// The file's axes that are the tank's x and y, if the user or the format defines them (in images y runs down).
     pub axes: Option<Axes>,
     /// Every group of columns with positions, in the order of the file.
     pub points: Vec<TrackPoint>,
@@ -177,7 +177,7 @@ struct Reading<'a> {
 /// Result of a format's reader.
 struct Draft {
     format: TrackFormat,
-    /// Where the header says it.
+    /// Rate of the header, if it has one.
     rate_hz: Option<f64>,
     unit: Unit,
     /// `true` for positions in an image, whose y runs down.

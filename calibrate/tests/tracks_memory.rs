@@ -1,4 +1,4 @@
-//! What a survey of a file costs: the same memory for any length of it, and what it says is what a whole reading says.
+//! Memory of a survey of a file: constant for any length, with the same report as a complete reading.
 
 use std::io::Read;
 use std::path::Path;
@@ -7,7 +7,7 @@ use calibrate::{
     PoseOptions, TrackFile, TrackOptions, UsedPoints, poses, read_tracks_with, survey_tracks,
 };
 
-/// A table of so many rows, made as it is read.
+/// A table of `total` rows, made as it is read.
 #[allow(clippy::struct_field_names)] // the rows of a table of rows
 struct Rows {
     next: u64,
@@ -86,7 +86,7 @@ fn a_survey_says_what_a_reading_says() {
     );
 }
 
-/// The most memory that this process ever had \[kB\], where the system tells it.
+/// Peak memory of this process \[kB\], if the system reports it.
 #[cfg(target_os = "linux")]
 fn peak_kb() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap();

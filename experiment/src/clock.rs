@@ -12,7 +12,7 @@ use crate::{Course, Pose};
 const SCAN_STEP: f64 = 0.004;
 /// Fewer poses than this give no match.
 const FEWEST_POSES: usize = 24;
-/// A match that is less certain than this is none \[s\].
+/// A match with a larger uncertainty is rejected \[s\].
 const LARGEST_UNCERTAINTY: f64 = 0.05;
 /// Amplitudes of the measured oscillation over the predicted one that count as the predicted gait.
 const AMPLITUDES: std::ops::RangeInclusive<f64> = 0.6..=1.6;

@@ -33,7 +33,7 @@ pub use ending::Ending;
 const SETTLING_S: f64 = 0.1;
 /// Poses older than this are not averaged \[s\].
 const AVERAGED_S: f64 = 2.0;
-/// A mean pose is good enough at this share of the tolerance, or after so long \[s\].
+/// Averaging stops when the standard error of the pose is this fraction of the tolerance, or after the longest time \[s\].
 const SHARE_OF_TOLERANCE: f64 = 0.1;
 const LONGEST_AVERAGE_S: f64 = 1.5;
 /// Poses in a row that must lie outside the margin: one may be wrong.
@@ -50,7 +50,7 @@ pub struct Target {
     pub heading_rad: Option<f64>,
 }
 
-/// What to do.
+/// Task of the controller.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Goal {
     /// Reach these poses one after the other.
@@ -75,7 +75,7 @@ pub struct Options {
     pub spare_m: f64,
     /// A pose older than this does not count as seen \[s\].
     pub longest_age_s: f64,
-    /// A robot at rest waits so long \[s\] for a lost track.
+    /// Longest time that a robot at rest waits for a lost track \[s\].
     pub longest_wait_s: f64,
     /// Seconds from the end of a cycle to the start of the next one, for the first guess.
     pub pause_s: f64,

@@ -23,7 +23,7 @@ const GAIN_BY_MODEL: f64 = 0.005;
 const NET_BY_MODEL: f64 = 0.01;
 /// A wall so near \[m\] explains a misfit.
 const AT_WALL: f64 = 0.006;
-/// Angles at which a joint may be blocked: so many between the smallest and the largest of the course.
+/// Number of angles at which a joint may be blocked, between the smallest and the largest of the course.
 const BLOCKED_ANGLES: u32 = 7;
 /// Drifts of two cycles are alike within this share.
 const ALIKE: f64 = 0.6;
@@ -125,7 +125,7 @@ pub struct CycleReport {
     pub drift: Option<[f64; 3]>,
     /// Poses of the cycle.
     pub poses: usize,
-    /// What the cycle alone looks like; `None`: as predicted.
+    /// Most likely fault by this cycle alone; `None` if it is as predicted.
     pub looks_like: Option<Likeness>,
     /// Departure that this cycle confirms.
     pub departure: Option<Departure>,
@@ -139,7 +139,7 @@ pub struct Monitor {
     others: Vec<(String, Course)>,
     cycle: Option<Cycle>,
     number: u32,
-    /// What the cycle before looked like, and since when.
+    /// Suspected fault of the previous cycle, and the cycle in which it began.
     suspicion: Option<Departure>,
 }
 

@@ -36,7 +36,7 @@ impl Pose {
     }
 }
 
-/// Errors of neighbouring frames are correlated by the filter before: so many count as one.
+/// Errors of neighbouring frames are correlated by the filter: this many count as one.
 pub(crate) const FRAMES_PER_SAMPLE: f64 = 4.0;
 
 /// Mean of some poses of a robot at rest; its deviations are those of the mean. `None` without poses.

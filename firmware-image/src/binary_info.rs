@@ -9,7 +9,7 @@ use crate::Flash;
 
 /// Start of flash in the chip's address space.
 const FLASH: u32 = 0x1000_0000;
-/// The header begins within so many bytes.
+/// The header begins within this many bytes.
 const HEADER_WITHIN: u32 = 512;
 const MARKERS: [u32; 2] = [0x7188_EBF2, 0xE71A_A390];
 /// Most bytes of the list of entries that are read.

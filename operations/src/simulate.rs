@@ -20,7 +20,7 @@ pub struct Options {
     pub played: Option<PlayedOptions>,
 }
 
-/// How the robot plays the gait.
+/// Settings of the play on the robot.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 pub struct PlayedOptions {
     /// Knots of the robot's table.

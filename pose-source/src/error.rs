@@ -20,7 +20,7 @@ pub enum SourceError {
         doing: String,
         /// The system's words.
         cause: io::Error,
-        /// What to do next.
+        /// Next step for the user.
         advice: &'static str,
     },
     /// A recording is not a tracking file, or is broken.
@@ -47,7 +47,7 @@ pub enum SourceError {
     Mcap {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// Reason of the failure.
         reason: String,
     },
     /// The digital twin could not be started.

@@ -25,7 +25,7 @@ pub const LONGEST_LINE: usize = 64 * 1024;
 pub struct Malformed {
     /// Its number, from 1.
     pub line: u64,
-    /// What is wrong with it.
+    /// Reason why it is refused.
     pub reason: String,
 }
 

@@ -16,7 +16,7 @@ use swimmer_files::Axes;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mapping {
-    /// Which of the source's axes are the tank's x and y.
+    /// Axes of the source that are the tank's x and y.
     pub axes: Axes,
     /// Metres per unit of the source.
     pub metres_per_unit: f64,

@@ -54,7 +54,7 @@ pub enum NatNetError {
          than 3.1, set its bitstream to 4.1"
     )]
     Undecodable {
-        /// How many.
+        /// Number of undecodable frames.
         count: u32,
         /// The bitstream's version.
         stream: String,

@@ -17,7 +17,7 @@ use crate::{Frame, RecordError, json_lines};
 pub(crate) const TOPIC: &str = "/cameras/frame";
 const SCHEMA_NAME: &str = "swimmer.CameraFrame";
 const SCHEMA: &str = include_str!("frame.schema.json");
-/// What was written is on the disk after so many frames.
+/// Number of frames between flushes to the disk.
 const FLUSH_EVERY: u64 = 50;
 /// Numbers of unlabeled points without a number begin here.
 const FIRST_UNLABELED: i64 = 1 << 32;
@@ -238,7 +238,7 @@ impl Csv {
 }
 
 impl Drop for Csv {
-    /// What is held is not lost if the recording is cut off by an error elsewhere.
+    /// Writes the buffered frames, so that an error elsewhere does not lose them.
     fn drop(&mut self) {
         let _ = self.begin();
     }

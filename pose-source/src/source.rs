@@ -5,7 +5,7 @@ use std::net::Ipv4Addr;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-/// Where frames come from.
+/// Origin of the frames.
 ///
 /// ```
 /// use pose_source::SourceName;

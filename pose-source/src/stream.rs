@@ -24,17 +24,17 @@ const RESTART_S: f64 = 1.0;
 /// Bytes read at once.
 const CHUNK: usize = 8192;
 
-/// How fast a recording or a twin goes.
+/// Speed at which a recording or a twin is played.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Pace {
-    /// As it was recorded.
+    /// The recorded speed.
     #[default]
     Recorded,
-    /// As fast as the reader takes frames; the time of reception is the stamp.
+    /// The speed of the reader; the time of reception is the stamp.
     Fast,
 }
 
-/// How to read a source.
+/// Options of a stream.
 #[derive(Debug, Clone, Default)]
 pub struct Settings {
     /// Axes and unit of any source; rate and likelihood of a recording.
@@ -67,7 +67,7 @@ pub struct Tallies {
     pub dropped: u64,
     /// Frames that came after a later one, and were dropped.
     pub out_of_order: u64,
-    /// How often the camera clock was set back.
+    /// Number of times that the camera clock was set back.
     pub restarts: u64,
     /// The source, in words, once it has replied.
     pub description: Option<String>,
@@ -201,7 +201,7 @@ impl Stream {
     /// Opens a source. The twin is a robot at rest; [`watch_twin`] and [`Stream::spawn`] make others.
     ///
     /// # Errors
-    /// [`SourceError`]: a file that cannot be read, a connection that is refused. What goes wrong later comes with
+    /// [`SourceError`]: a file that cannot be read, a connection that is refused. Later errors arrive as
     /// [`Received::Ended`].
     pub fn open(name: &SourceName, settings: &Settings) -> Result<Self, SourceError> {
         match name {

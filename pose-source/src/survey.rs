@@ -32,7 +32,7 @@ pub struct PointCount {
     pub gaps: u64,
     /// The longest of them \[s\].
     pub longest_gap_s: f64,
-    /// How often it moved too far for a robot in the tank.
+    /// Number of movements that are too large for a robot in the tank.
     pub jumps: u64,
 }
 
@@ -215,7 +215,7 @@ impl Survey {
         }
     }
 
-    /// Where each named point was last \[m\], by name.
+    /// Last position of each named point \[m\], by name.
     pub fn last_places(&self) -> impl Iterator<Item = (&str, [f64; 3])> {
         self.points
             .iter()

@@ -43,7 +43,7 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     }
 }
 
-/// As [`write_atomically`], for what is too large to be held: `write` is handed the file, beside its place until it is whole.
+/// [`write_atomically`] for large contents: `write` receives the temporary file, which replaces the target when it is complete.
 ///
 /// # Errors
 /// As [`write_atomically`], and whatever `write` says; nothing is left behind then.
@@ -109,7 +109,7 @@ pub(crate) fn folder_of(place: &Path) -> io::Result<&Path> {
     }
 }
 
-/// What a path that shall be written leads to.
+/// Kind of target of a path to write.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum Destination {
     /// A file, there or not yet, under the name that no symbolic link stands at.
@@ -118,7 +118,7 @@ pub(crate) enum Destination {
     Stream,
 }
 
-/// Where writing to `path` ends: a rename would replace the symbolic link or the device itself.
+/// Resolves `path` for writing: a rename would replace the symbolic link or the device itself.
 pub(crate) fn destination(path: &Path) -> io::Result<Destination> {
     match fs::metadata(path) {
         Ok(there) if there.is_dir() => {
@@ -135,7 +135,7 @@ pub(crate) fn destination(path: &Path) -> io::Result<Destination> {
     let mut place = path.to_path_buf();
     for _ in 0..LONGEST_CHAIN {
         match fs::read_link(&place) {
-            // A target is told from the link's own folder.
+            // The target of a link is relative to the link's own folder.
             Ok(target) => place = place.with_file_name("").join(target),
             Err(_) => break,
         }

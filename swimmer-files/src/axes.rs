@@ -1,4 +1,4 @@
-//! Which of a recording's axes are the tank's x and y.
+//! Axes of a recording that are the tank's x and y.
 
 use std::fmt;
 use std::str::FromStr;

@@ -40,19 +40,19 @@ pub use told::{ToldRun, ToldValue};
 pub struct Campaign {
     /// The swimmer; its sphere radius and χ are only starting values of a fit.
     pub swimmer: SwimmerFile,
-    /// Where it was read; `None` for a preset.
+    /// Path that it was read from; `None` for a preset.
     pub swimmer_path: Option<PathBuf>,
     /// The two reflectors on the middle link.
     pub reflectors: Reflectors,
-    /// What the tracking files do not say themselves.
+    /// Properties of the tracking files that they do not state.
     pub tracks: TrackSettings,
-    /// What is known beforehand of what a fit takes for granted.
+    /// Prior knowledge of the quantities that a fit otherwise assumes.
     pub known: Known,
     /// The runs, in the file's order.
     pub runs: Vec<CampaignRun>,
 }
 
-/// What the tracking files of a campaign do not say themselves (the `[tracks]` table).
+/// Properties of a campaign's tracking files that they do not state (the `[tracks]` table).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct TrackSettings {
     /// `scale`: metres per unit of the files (per pixel).
@@ -124,7 +124,7 @@ pub struct Reflector {
     pub at: [f64; 2],
 }
 
-/// Which of a tracking file's points a reflector is.
+/// Identifies a reflector among the points of a tracking file.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PointName {
     /// A marker's name (`point = "Front"`).
@@ -141,7 +141,7 @@ pub enum PointName {
 impl std::str::FromStr for PointName {
     type Err = String;
 
-    /// As on the command line: `auto`, a place `X,Y` in metres, two columns `x1,y1`, or a name.
+    /// Syntax of the command line: `auto`, a place `X,Y` in metres, two columns `x1,y1`, or a name.
     fn from_str(text: &str) -> Result<Self, String> {
         let text = text.trim();
         if text.is_empty() {
@@ -164,7 +164,7 @@ impl std::str::FromStr for PointName {
     }
 }
 
-/// What is known of when a run's cycles began.
+/// Known starts of a run's cycles.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RunTiming {
     /// `cycle_start_s`: the cameras' time at which a cycle began, as by the flash of the robot's LED \[s\].
@@ -177,12 +177,12 @@ pub struct RunTiming {
     pub clock_offset_s: Option<f64>,
 }
 
-/// One run: a track or what is told instead of one, the gait that was swum, its period.
+/// One run: a track or reported results, the gait that was played, its period.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CampaignRun {
-    /// The tracking file; of a run that is told, where it is told (`campaign.toml:12`, `figure.csv:3`).
+    /// The tracking file; for reported results the place at which they are written (`campaign.toml:12`, `figure.csv:3`).
     pub track: PathBuf,
-    /// Its results, where these are told instead of a track.
+    /// Reported results, if given instead of a track.
     pub told: Option<ToldRun>,
     /// The gait that was played.
     pub gait: GaitSpec,
@@ -206,8 +206,7 @@ impl Campaign {
         read::campaign(&read_text(path)?, path, &is_there, SwimmerFile::find_from)
     }
 
-    /// Reads a campaign's text; `path` says which folder its paths start from. Whether the files of its runs are there is not
-    /// looked at.
+    /// Reads a campaign's text; relative paths start from the folder of `path`. The existence of the runs' files is not checked.
     ///
     /// # Errors
     /// As [`Campaign::load`].

@@ -18,7 +18,7 @@ use nalgebra::Vector2;
 use crate::place::read_text;
 use crate::{FileError, SwimmerHash, write_atomically};
 
-/// What a gait was optimised for.
+/// Objective that a gait was optimised for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Objective {
     /// Net displacement in x (paper section IV).
@@ -42,7 +42,7 @@ pub enum Objective {
     Unspecified,
 }
 
-/// What an arc of an optimal gait runs along.
+/// Kind of an arc of an optimal gait.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ArcKind {
     /// Free, with the control from `Ḧ_u = 0` (paper, `u₂* = −(A/B) u₁*`).
@@ -64,11 +64,11 @@ pub enum ArcKind {
 /// One arc of the cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GaitArc {
-    /// What it runs along.
+    /// Kind of the arc.
     pub kind: ArcKind,
-    /// Where it starts, as a fraction of the period.
+    /// Start, as a fraction of the period.
     pub from: f64,
-    /// Where it ends, as a fraction of the period.
+    /// End, as a fraction of the period.
     pub to: f64,
 }
 
@@ -78,7 +78,7 @@ pub struct GaitArc {
 /// Each corner is one of the `u` below 1.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct GaitFile {
-    /// What the gait was optimised for.
+    /// Objective that the gait was optimised for.
     pub objective: Objective,
     /// Name of the swimmer it was made for, where known.
     pub swimmer_name: Option<String>,
@@ -149,7 +149,7 @@ impl Objective {
         Self::Unspecified,
     ];
 
-    /// Whether the gait is best of those that begin and end at its first sample's shape.
+    /// `true` for a gait that is the best of those that begin and end at its first sample's shape.
     pub fn is_joined(self) -> bool {
         matches!(
             self,

@@ -25,7 +25,7 @@ pub enum GaitSpec {
     },
     /// A gait file, run backwards when reversed.
     File {
-        /// Where it is.
+        /// Path of the file.
         path: PathBuf,
         /// `:cw` was added.
         reversed: bool,
@@ -38,15 +38,15 @@ pub enum GaitSpecError {
     /// The amplitude is no angle.
     #[error("`{text}`: {source}")]
     Amplitude {
-        /// What was typed.
+        /// The text as typed.
         text: String,
-        /// What is wrong with it.
+        /// Error in it.
         source: crate::AngleError,
     },
     /// The amplitude is an angle, but no size.
     #[error("`{text}`: the amplitude is {amplitude} rad; it must be above 0 and at most {largest}")]
     Size {
-        /// What was typed.
+        /// The text as typed.
         text: String,
         /// The amplitude \[rad\].
         amplitude: f64,
@@ -56,9 +56,9 @@ pub enum GaitSpecError {
     /// Nearly the name of a shape.
     #[error("there is no gait `{text}`: did you mean {meant}? (a file of that name is ./{text})")]
     Misspelt {
-        /// What was typed.
+        /// The text as typed.
         text: String,
-        /// What was meant.
+        /// The likely intention.
         meant: String,
     },
     /// Nothing was typed.
@@ -133,7 +133,7 @@ fn size(text: &str, amplitude: &str) -> Result<f64, GaitSpecError> {
 }
 
 impl GaitSpec {
-    /// Whether `:cw` was added.
+    /// `true` if `:cw` was added.
     pub fn is_reversed(&self) -> bool {
         match self {
             Self::Circle { clockwise, .. } | Self::Square { clockwise, .. } => *clockwise,
@@ -181,7 +181,7 @@ impl GaitSpec {
         }
     }
 
-    /// As people name it: a round number of degrees is said so.
+    /// Name for people: a round number of degrees is written as such.
     ///
     /// ```
     /// use swimmer_files::GaitSpec;

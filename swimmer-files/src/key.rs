@@ -5,7 +5,7 @@ use link_protocol::Key;
 /// Reads a key: 32 hexadecimal digits in one line; lines that begin with # are remarks.
 ///
 /// # Errors
-/// What is wrong and where, as it goes on behind the file's name.
+/// Place and reason, to be appended to the file's name.
 ///
 /// ```
 /// let key = swimmer_files::parse_key("# the robot's\n000102030405060708090a0b0c0d0e0f\n").unwrap();

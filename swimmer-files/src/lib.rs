@@ -1,8 +1,7 @@
-//! What people keep on disk, read and written once: swimmer, gait and campaign files, the link log.
+//! Files of the user, with one reader and writer each: swimmer, gait and campaign files, the link log.
 //!
-//! Every reader answers a mistake with [`FileError`], which names file, line and column; every writer puts a whole file in
-//! place at once (a temporary file beside it, then a rename), so that nothing half-written is ever found. Numbers make the
-//! round trip exactly.
+//! Every reader reports a mistake as [`FileError`], which names file, line and column; every writer replaces a file atomically (a
+//! temporary file next to it, then a rename), so that no reader sees a partial file. Numbers make the round trip exactly.
 //!
 //! | on disk | here |
 //! |---|---|

@@ -2,9 +2,9 @@
 //!
 //! MCAP is read by Foxglove, by the `mcap` Python package and by many others. Two topics, `/link/to_robot` and
 //! `/link/from_robot`; each message is JSON after the JSON schema `swimmer.LinkFrame` that the file carries: host time, robot
-//! time where it is known, the decoded header and message where the frame is sound, and the raw bytes in hexadecimal,
-//! so that nothing depends on this program's decoder. A third topic, `/robot/telemetry`, says again in SI units what the
-//! telemetry frames tell, to be plotted; it is written for people and never read back.
+//! time if it is known, the decoded header and message if the frame is valid, and the raw bytes in hexadecimal, so that nothing
+//! depends on this program's decoder. A third topic, `/robot/telemetry`, repeats the telemetry frames in SI units for plots; it
+//! is written for people and never read back.
 //!
 //! Foxglove reads no schema with alternatives, so every field has one type and what is not known is left out.
 
@@ -60,7 +60,7 @@ pub enum LinkLogError {
     NoLinkLog {
         /// The file.
         path: PathBuf,
-        /// What it is instead.
+        /// Description of the file's contents.
         what: &'static str,
     },
     /// The MCAP container.
@@ -68,7 +68,7 @@ pub enum LinkLogError {
     Container {
         /// The log.
         path: PathBuf,
-        /// What the container's reader or writer said, in one line.
+        /// Message of the container's reader or writer, in one line.
         problem: String,
     },
     /// A message in it is not a link frame.
@@ -78,7 +78,7 @@ pub enum LinkLogError {
         path: PathBuf,
         /// Counted from 0 in the order of the file.
         index: usize,
-        /// What is wrong.
+        /// Reason why it is refused.
         problem: String,
     },
 }

@@ -1,4 +1,4 @@
-//! Where in a file something is wrong: one error type for every reader, with file, line and column.
+//! Error type of every reader, with file, line and column of the mistake.
 
 use std::path::{Path, PathBuf};
 
@@ -17,7 +17,7 @@ pub enum FileError {
     Read {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the system.
         source: std::io::Error,
     },
     /// The file could not be written; what was there before is untouched.
@@ -25,7 +25,7 @@ pub enum FileError {
     Write {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the system.
         source: std::io::Error,
     },
     /// The file was read, but what stands at this place cannot be meant.
@@ -37,7 +37,7 @@ pub enum FileError {
         line: usize,
         /// Column in characters, counted from 1.
         column: usize,
-        /// What is wrong and what would be right.
+        /// Reason, and the correct form.
         problem: String,
     },
 }

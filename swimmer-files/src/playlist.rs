@@ -18,7 +18,7 @@ const VERSION: u32 = 1;
 const FORMAT: &str = "swimmer playlist";
 /// Gaits join where their first and last shapes are no further apart than this \[rad\]: well below the unit of a robot's table.
 const JOINED: f64 = 1e-5;
-/// Steps, and cycles of one: so many seconds of them are more than a month.
+/// Largest number of steps, and of cycles per step.
 const MOST: u32 = 1_000_000;
 
 /// Gaits to be played one after the other.
@@ -148,7 +148,7 @@ impl Playlist {
         })
     }
 
-    /// The playlist's text: gaits as they are named, so that files lie beside it.
+    /// The playlist's text. Gaits keep the names that they were given, so files are relative to the playlist.
     pub fn to_text(&self) -> String {
         let mut text = format!(
             "# A playlist: gaits that start and end at one shape, to be played one after the other.\n\

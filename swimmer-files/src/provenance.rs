@@ -1,4 +1,4 @@
-//! What a fitted swimmer was made from: the `[provenance]` table with a hash of every input, so that a change of one is noticed.
+//! Inputs of a fitted swimmer: the `[provenance]` table with a hash of every input, which detects a change of one.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -29,7 +29,7 @@ use crate::{FileError, SwimmerFile, write_atomically};
 pub struct Provenance {
     /// The program that made the file.
     pub made_by: String,
-    /// What it was made from.
+    /// Files that it was made from.
     #[serde(rename = "input", default)]
     pub inputs: Vec<InputHash>,
 }
@@ -38,7 +38,7 @@ pub struct Provenance {
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct InputHash {
-    /// Its path, from the folder of the file that tells of it; `/` between folders.
+    /// Its path, relative to the folder of the swimmer file; `/` between folders.
     pub file: String,
     /// SHA-256 of its bytes, 64 hexadecimal digits.
     pub sha256: String,
@@ -206,7 +206,7 @@ mod tests {
         assert!(read.changed(&out).is_empty());
         std::fs::write(&inputs[1], "abd").unwrap();
         assert_eq!(read.changed(&out), ["../data/a b.csv"]);
-        // What is gone is no change: the swimmer may have been sent elsewhere.
+        // A missing input is not reported as changed: the swimmer may have been sent to another place.
         std::fs::remove_file(&inputs[1]).unwrap();
         assert!(read.changed(&out).is_empty());
         std::fs::write(&path, swimmer.to_toml()).unwrap();

@@ -10,10 +10,10 @@ use swimmer_model::Swimmer;
 use crate::place::read_text;
 use crate::{FileError, SwimmerHash, write_atomically};
 
-/// What a swimmer file holds.
+/// Contents of a swimmer file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SwimmerFile {
-    /// What people call this swimmer.
+    /// Name of the swimmer for people.
     pub name: String,
     /// Links \[m\], drag and sphere.
     pub swimmer: Swimmer<f64>,
@@ -54,7 +54,7 @@ pub struct ServoFile {
     pub centre_us: f64,
     /// Largest torque at the joint \[N m\], where it is known.
     pub torque: Option<f64>,
-    /// How fast it turns without a load \[rad/s\], where it is known; the torque falls to 0 on the way there.
+    /// Rate without a load \[rad/s\], if it is known; the torque falls linearly to 0 at this rate.
     pub no_load_rate: Option<f64>,
 }
 
@@ -94,7 +94,7 @@ impl SwimmerFile {
         })
     }
 
-    /// What `--swimmer` means: a preset's name, else the path of a swimmer file.
+    /// Resolves `--swimmer`: a preset's name, else the path of a swimmer file.
     ///
     /// # Errors
     /// [`FileError`] when it is neither, or the file is not a swimmer file.
@@ -158,7 +158,7 @@ impl SwimmerFile {
         write::swimmer_toml(self)
     }
 
-    /// What is possible but hardly meant, each in a sentence with its physics.
+    /// Possible but unlikely values, each in a sentence with its physics.
     pub fn doubts(&self) -> Vec<String> {
         let swimmer = &self.swimmer;
         let (chi, sphere_radius) = (swimmer.chi, swimmer.sphere_radius);

@@ -1,4 +1,4 @@
-//! What a shape and a cycle cost: connection and power, their derivatives, one stroke at 1e-10.
+//! Cost of a shape and of a cycle: connection and power, their derivatives, one stroke at 1e-10.
 
 use criterion::Criterion;
 use nalgebra::Vector2;

@@ -1,4 +1,4 @@
-//! Which circle in the plane of joint angles carries a swimmer farthest? `cargo run -p swimmer-model --example best_circle`
+//! The circle in the plane of joint angles with the largest displacement. `cargo run -p swimmer-model --example best_circle`
 
 use swimmer_model::{Circle, InvalidSwimmer, Model, Swimmer, Tolerance, swim};
 

@@ -142,21 +142,21 @@ impl<T: Scalar> Model<T> {
         self.second_derivatives_at(turns(phi))
     }
 
-    /// As [`Self::connection_and_power`], from (sin φ₁, cos φ₁) and (sin φ₂, cos φ₂). This and the next two have no branch and are
-    /// inlined whole: a loop of them over many shapes can become vector instructions.
+    /// [`Self::connection_and_power`] from (sin φ₁, cos φ₁) and (sin φ₂, cos φ₂). This and the next two have no branch and are
+    /// inlined: a compiler can vectorise a loop of them over many shapes.
     #[inline(always)]
     pub fn connection_and_power_at(&self, turns: [(T, T); 2]) -> (Matrix3x2<T>, Matrix2<T>) {
         let balance = self.balance(turns);
         (balance.connection(), self.power(&balance))
     }
 
-    /// As [`Self::first_derivatives`], from (sin φ₁, cos φ₁) and (sin φ₂, cos φ₂).
+    /// [`Self::first_derivatives`] from (sin φ₁, cos φ₁) and (sin φ₂, cos φ₂).
     #[inline(always)]
     pub fn first_derivatives_at(&self, turns: [(T, T); 2]) -> FirstDerivatives<T> {
         self.first(&self.balance(turns)).0
     }
 
-    /// As [`Self::second_derivatives`], from (sin φ₁, cos φ₁) and (sin φ₂, cos φ₂).
+    /// [`Self::second_derivatives`] from (sin φ₁, cos φ₁) and (sin φ₂, cos φ₂).
     #[inline(always)]
     pub fn second_derivatives_at(&self, turns: [(T, T); 2]) -> SecondDerivatives<T> {
         let balance = self.balance(turns);
@@ -296,8 +296,8 @@ struct Slopes<T> {
 }
 
 impl<T: Scalar> Slopes<T> {
-    /// What first derivatives add up to in ∂ᵢⱼA = −M⁻¹(∂ᵢⱼN + ∂ᵢⱼM A + ∂ᵢM ∂ⱼA + ∂ⱼM ∂ᵢA) and in
-    /// ∂ᵢⱼW = ∂ᵢⱼNᵀA + Aᵀ∂ᵢⱼN + Aᵀ∂ᵢⱼM A + Yᵢᵀ∂ⱼA + ∂ⱼAᵀYᵢ, Yᵢ = ∂ᵢN + ∂ᵢM A.
+    /// Contribution of first derivatives to ∂ᵢⱼA = −M⁻¹(∂ᵢⱼN + ∂ᵢⱼM A + ∂ᵢM ∂ⱼA + ∂ⱼM ∂ᵢA) and to ∂ᵢⱼW = ∂ᵢⱼNᵀA + Aᵀ∂ᵢⱼN + Aᵀ∂ᵢⱼM
+    /// A + Yᵢᵀ∂ⱼA + ∂ⱼAᵀYᵢ, Yᵢ = ∂ᵢN + ∂ᵢM A.
     #[inline(always)]
     fn crossed(&self, i: usize, j: usize) -> ([Vector3<T>; 2], Matrix2<T>) {
         let (di, dj, y) = (&self.da[i], &self.da[j], &self.force[i]);

@@ -12,33 +12,33 @@ use crate::quantities::{NAMES, QUANTITIES, TELLING, measured};
 use crate::student;
 use swimmer_model::Gait as _;
 
-/// The signs of what is left of one quantity, from the smallest gait to the largest.
+/// Signs of the residuals of one quantity, from the smallest gait to the largest.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SignTest {
     /// X, ΔY or Δθ.
     pub quantity: &'static str,
-    /// Signs of simulated less measured, one of each run.
+    /// Signs of simulated minus measured, one per run.
     pub signs: Vec<i8>,
-    /// Stretches of one sign.
+    /// Number of stretches of equal sign.
     pub stretches: usize,
-    /// Chance of as few or fewer, if signs fell by chance.
+    /// Probability of as few stretches or fewer with random signs.
     pub chance: f64,
 }
 
 /// Fit of one run by itself.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct RunGoodness {
-    /// Y over X, and its standard error by the run's cycles: a symmetric gait has none.
+    /// Y over X, and its standard error from the run's cycles; 0 for a symmetric gait.
     pub y_over_x: [f64; 2],
-    /// Chance of a Y so far or further from the model's, whose servos are those of the swimmer file (Student's t).
+    /// Probability of a Y as far from the model's or farther; the model has the servos of the swimmer file (Student's t).
     pub y_chance: f64,
-    /// Net turn of a cycle \[rad\], and its standard error by the run's cycles: a symmetric gait has none.
+    /// Net turn of a cycle \[rad\], and its standard error from the run's cycles; 0 for a symmetric gait.
     pub turn_rad: [f64; 2],
-    /// Chance of a turn so far or further from the model's.
+    /// Probability of a turn as far from the model's or farther.
     pub turn_chance: f64,
     /// Velocity along and across the heading that would explain X and Y beyond the model \[m/s\].
     pub drift_m_per_s: [f64; 2],
-    /// Lengths over those that the other runs foretell, and its standard error: what a wall makes of a run.
+    /// Ratio of lengths to those predicted from the other runs, and its standard error: a wall reduces it.
     pub scale: Option<[f64; 2]>,
 }
 
@@ -279,7 +279,7 @@ fn of_run(found: &CampaignFit, plain: &Plain, joint: Option<&Joint>, run: usize)
     }
 }
 
-/// A run's X and ΔY over what the others foretell of them.
+/// Ratio of a run's X and ΔY to those predicted from the other runs.
 fn length_scale(joint: &Joint, run: usize) -> Option<[f64; 2]> {
     let rows: Vec<usize> = [0, 1].map(|q| QUANTITIES * run + q).into();
     let rows: Vec<usize> = rows

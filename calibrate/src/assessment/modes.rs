@@ -32,9 +32,9 @@ const APART: f64 = 3e-3;
 pub(super) struct JointProblem {
     model: RunModel,
     priors: Vec<Prior>,
-    /// Values of the runs, then what is known.
+    /// Values of the runs, then the priors.
     data: RunValues,
-    /// Where what is known begins among them.
+    /// Index of the first prior among them.
     pub(super) first: usize,
     start: Vec<f64>,
     /// Weights of the first step, from the side on which the runs scatter.

@@ -18,9 +18,9 @@ use crate::fit::tangent::Tangent;
 use crate::least_squares::{Model as _, minimise};
 use crate::quantities::{NAMES, QUANTITIES};
 
-/// Errors without a prior, with their plausible sizes (rad, ln, s), tried in addition to the priors. One is included if the runs
-/// are twenty times likelier with it (ln of odds), as such errors are rare, and if it is so many of its own standard deviations from
-/// zero. Above higher odds it counts as certain.
+/// Errors without a prior, with their plausible sizes (rad, ln, s), tried in addition to the priors. One is included if it makes
+/// the runs twenty times likelier (ln of odds), as such errors are rare, and if it is at least [`TELLING_DEVIATIONS`] standard
+/// deviations from zero. Above higher odds it counts as certain.
 const UNFORESEEN: [(Parameter, f64); 8] = [
     (Parameter::DeadBand, 5.0 * std::f64::consts::PI / 180.0),
     (Parameter::TangentialDrag, 0.3),
@@ -98,7 +98,7 @@ pub(super) struct Joint {
     known: Vec<Known>,
     /// r_s, χ, the parameters with a prior, and errors without one.
     pub(super) parameters: Vec<Parameter>,
-    /// Where what is known stands among the values.
+    /// Index of the first prior among the values.
     first: usize,
     pub(super) data: RunValues,
     pub(super) estimate: Estimate,
@@ -204,7 +204,7 @@ impl Joint {
             let natural = |value: f64| prior.parameter.natural(value, swimmer);
             let per = |width: f64| natural(prior.value + width) - natural(prior.value);
             let variance = covariance[(place, place)];
-            // What the runs say by themselves follows from what both say together.
+            // Separates the estimate of the runs alone from the estimate of runs and prior together.
             let believed = self.data.within[self.first + index].value;
             let share = (1.0 - variance / believed).max(LEAST_SAID);
             let by_runs = (at[place] - prior.value) / share;

@@ -128,7 +128,7 @@ fn far_steps(drawn: &[FittedCycle], period: f64, distance_m: f64) -> Vec<(usize,
     if steps.len() < FEWEST_STEPS {
         return Vec::new();
     }
-    // How far off each step is, and how far it may be.
+    // Deviation of each step from the median, and whether it exceeds the limit.
     let off = |value: fn(&Pose<f64>) -> f64, near: f64| {
         let values = || steps.iter().map(|(_, step)| value(step));
         let middle = median(values()).unwrap_or(0.0);

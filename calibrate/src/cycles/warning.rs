@@ -9,14 +9,14 @@ use super::periodicity::Periodicity;
 pub enum CycleWarning {
     /// The period differs from the commanded one by more than 0.5 %.
     Period {
-        /// As commanded \[s\].
+        /// The commanded period \[s\].
         commanded_s: f64,
-        /// As found \[s\].
+        /// The measured period \[s\].
         found_s: f64,
     },
     /// No period within ±2 % of the commanded one is best.
     PeriodNotFound {
-        /// As commanded \[s\].
+        /// The commanded period \[s\].
         commanded_s: f64,
     },
     /// Only one cycle: X is its drift, and there is no deviation.

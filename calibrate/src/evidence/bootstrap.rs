@@ -27,7 +27,7 @@ pub(super) const ENOUGH_RUNS: usize = 5;
 #[derive(Debug, Clone)]
 pub(super) struct Drawn {
     pub(super) means: [f64; QUANTITIES],
-    /// Which of them there are.
+    /// `true` for each quantity that the run has.
     pub(super) there: [bool; QUANTITIES],
     /// Deviations from the mean, widened.
     pub(super) deviations: [Vec<f64>; QUANTITIES],
@@ -127,8 +127,8 @@ pub(super) fn papers_fit(
         .map_or(start, |end| [end.at[0], end.at[1]])
 }
 
-/// `BCa`: percentiles of the draws, moved by how far the optimum is from their median and by how the spread changes with it. The
-/// ends lie so many standard deviations out as `reach` says.
+/// `BCa`: percentiles of the draws, corrected for bias (position of the optimum in the draws) and for acceleration (change of the
+/// spread with the value). The ends lie `reach` standard deviations out.
 fn accelerated(
     mut draws: Vec<f64>,
     optimum: f64,

@@ -44,7 +44,7 @@ impl LikelihoodProblem {
         })
     }
 
-    /// The likelihood sought from as many starts as the paper's fit, with the variances of an estimate.
+    /// The optimum of the likelihood from as many starts as the paper's fit, with the variances of an estimate.
     pub(super) fn sought_widely(&self, model: &RunModel, estimate: &Estimate) -> Option<[f64; 2]> {
         let end = fit::search(model, &self.data, &estimate.weights).ok()?;
         Some([end.at[0], end.at[1]])

@@ -1,5 +1,5 @@
-//! The model's answers over a rectangle of (r_s/L, ln χ), as polynomials: what profiles, contours and a thousand refits ask of
-//! the model again and again, they ask of these. How far the polynomials are off is measured, not assumed.
+//! Interpolation of the model over a rectangle of (r_s/L, ln χ) by polynomials, which replace the model in profiles, contours and
+//! a thousand refits. The error of the polynomials is measured, not assumed.
 
 use std::f64::consts::PI;
 

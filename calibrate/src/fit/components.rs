@@ -22,8 +22,8 @@ pub(crate) struct Components {
 }
 
 impl Components {
-    /// From the residuals (the values of each run, then what is known beforehand) of a least-squares fit with this Jacobian and these weights; `None` where
-    /// it is singular. A residual without weight says nothing.
+    /// From the residuals (the values of each run, then the priors) of a least-squares fit with this Jacobian and these weights.
+    /// A residual of weight 0 has no influence. Returns `None` if the normal equations are singular.
     pub(crate) fn of(
         jacobian: &DMatrix<f64>,
         weights: &[f64],
@@ -35,7 +35,7 @@ impl Components {
         let gain = inverse * weighted.transpose();
         let rows = jacobian.nrows();
         let left = DMatrix::identity(rows, rows) - jacobian * &gain;
-        // What residuals of one quantity owe to the errors of another.
+        // Contribution of the errors of one quantity to the residuals of another.
         let mut owed = DMatrix::<f64>::zeros(QUANTITIES, QUANTITIES);
         let mut sums = DVector::<f64>::zeros(QUANTITIES);
         let mut squares = [0.0; QUANTITIES];
@@ -127,7 +127,7 @@ impl Components {
     }
 }
 
-/// Which of a run's values this is; `None` for what is known beforehand.
+/// Quantity of a row of the values; `None` for a prior.
 fn quantity(within: &[Variance], row: usize) -> Option<usize> {
     let of_run = within.get(row).is_some_and(|v| v.freedom.is_finite());
     of_run.then_some(row % QUANTITIES)
@@ -135,7 +135,7 @@ fn quantity(within: &[Variance], row: usize) -> Option<usize> {
 
 /// Solves A x = b where x must not be negative: what comes out below zero is zero, and the rest is solved again.
 fn non_negative(a: &DMatrix<f64>, b: &DVector<f64>) -> [f64; QUANTITIES] {
-    // What no residual is of has no variance.
+    // A quantity without residuals has no variance.
     let mut kept: Vec<usize> = (0..QUANTITIES).filter(|q| a[(*q, *q)] > 0.0).collect();
     while !kept.is_empty() {
         let matrix = DMatrix::from_fn(kept.len(), kept.len(), |i, j| a[(kept[i], kept[j])]);
@@ -205,7 +205,7 @@ mod tests {
             "{:?}",
             found.freedom
         );
-        // What is certain to a third is not certain at all: fewer degrees of freedom than residuals.
+        // An estimate with a relative uncertainty of a third has fewer degrees of freedom than residuals.
         assert!(found.of_parameter(0).freedom < 30.0);
     }
 

@@ -1,11 +1,12 @@
 //! Errors of X, ΔY and Δθ of a run, estimated from its cycles.
 //!
-//! Their variance comes from as few as four cycles, so it is itself uncertain: the runs' variances are drawn towards what they
-//! have in common, by as much as their own scatter allows (Smyth's moderated variances, Stat. Appl. Genet. Mol. Biol. 3, 2004).
-//! Two cycles can agree by chance, so the noise of the cameras is a floor under each variance, and a run of two or three cycles
-//! is pooled with the others at least up to [`LEAST_FREEDOM`] degrees of freedom.
-//! Steps X of neighbouring cycles share one, so camera noise makes them vary against each other and a drifting tank with each
-//! other; their lag-1 correlation is pooled over the runs.
+//! Their variance comes from as few as four cycles, so it is itself uncertain: the runs' variances are shrunk towards a common
+//! value, as far as their own scatter allows (Smyth's moderated variances, Stat. Appl. Genet. Mol. Biol. 3, 2004). Two cycles can
+//! agree by chance, so the noise of the cameras is a lower bound of each variance, and a run of two or three cycles is pooled
+//! with the others at least up to [`LEAST_FREEDOM`] degrees of freedom.
+//!
+//! Steps X of neighbouring cycles share one position, so camera noise gives them a negative correlation and a drifting tank a
+//! positive one; their lag-1 correlation is pooled over the runs.
 //!
 //! An error that all cycles of a run share does not show here, but in the residuals of the fit (`components.rs`).
 
@@ -43,7 +44,7 @@ impl Variance {
 pub(crate) struct RunErrors {
     /// Of the model's values by errors of measured joint angles: they add to the variance of the mean.
     pub(crate) path: [f64; QUANTITIES],
-    /// Of a single cycle by the noise of the cameras: a floor under the scatter between cycles.
+    /// Of a single cycle by the noise of the cameras: a lower bound of the scatter between cycles.
     pub(crate) noise: [f64; QUANTITIES],
 }
 
@@ -161,7 +162,7 @@ fn common_lag(runs: &[Statistics]) -> f64 {
     }
 }
 
-/// Variances of single cycles, drawn towards each other, none below its floor.
+/// Variances of single cycles, shrunk towards each other, each at least its lower bound.
 fn moderated(runs: &[Statistics], floors: &[f64]) -> Vec<Variance> {
     let samples: Vec<(f64, f64)> = runs
         .iter()

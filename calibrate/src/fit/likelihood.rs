@@ -13,7 +13,7 @@ const STILL: f64 = 1e-7;
 /// Minima that are nearer than this are one.
 const APART: f64 = 1e-4;
 
-/// Where the likelihood is largest.
+/// Maximum of the likelihood.
 #[derive(Debug, Clone)]
 pub(crate) struct Estimate {
     pub(crate) at: Vec<f64>,

@@ -15,7 +15,7 @@ const DISTANCE: f64 = 0.1;
 const STEP: f64 = 0.3;
 const SPEED: f64 = 6.0;
 
-/// Which side link: where its joint is along the middle link, in half lengths of it, and how its angle turns.
+/// One side link: the position of its joint along the middle link, in half lengths of it, and the sign of its angle.
 struct Side<'a> {
     reflector: &'a Reflector,
     end: f64,
@@ -95,7 +95,7 @@ impl Side<'_> {
     }
 }
 
-/// Which of the angles goes on from the last one; without one, by name, else the straightest.
+/// Angle that continues the last one; without a last one the named point's, else the straightest.
 fn next(
     seen: &[(usize, f64)],
     named: &[usize],

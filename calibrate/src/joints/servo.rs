@@ -13,7 +13,7 @@ const DEAD_BANDS: [f64; 3] = [0.01, 0.06, 0.15];
 /// Half a difference's width.
 const STEP: f64 = 1e-4;
 
-/// Gain, offset \[rad\], lag \[cycles\], dead band \[rad\] of one servo, foretelling its course.
+/// Model of one servo: gain, offset \[rad\], lag \[cycles\] and dead band \[rad\] predict its course.
 struct Servo<F>(F);
 
 const DEAD_BAND: usize = 3;

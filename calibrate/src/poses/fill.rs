@@ -1,11 +1,12 @@
 //! Gaps: the samples next to them are not trusted, short ones are filled, and both are marked.
 //!
-//! A reflector that is about to be hidden is seen in part, and what is seen of it is off its centre: so beside a gap of two
-//! rows and more [`TAIL`] samples on either side become tails, for which the cubic stands in. (One missing row is a lost frame, not a hidden reflector.)
+//! A reflector that is about to be hidden is partly visible, and its measured centre is displaced. So [`TAIL`] samples on either
+//! side of a gap of two rows or more become tails, which the cubic replaces. (One missing row is a lost frame, not a hidden
+//! reflector.)
 //!
 //! A gap of at most the longest fill is filled in x and y of each reflector by the monotone cubic through the means of a few
-//! trusted samples on either side: means, because over a gap of ten rows a slope between two neighbouring rows is noise. Where
-//! one reflector is seen in the gap, the cubic only gives the heading, and the pose comes from the one that is seen.
+//! trusted samples on either side: means, because over a gap of ten rows a slope between two neighbouring rows is noise. If one
+//! reflector is visible in the gap, the cubic only gives the heading, and the pose comes from the visible one.
 
 use nalgebra::Vector2;
 

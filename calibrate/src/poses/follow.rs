@@ -4,8 +4,8 @@
 //! no reflector a row ago than to where constant velocity puts the reflectors: they are that other point still. Chosen is the
 //! ordered pair nearest to the predicted places, among the pairs whose distance is right. A label that moves to the other
 //! reflector, or to a ghost, thus changes nothing. After a gap in which a reflector could have covered half of the distance
-//! between both, the order could be exchanged unseen: there a new segment begins, and what joins segments, or turns one round,
-//! is told in `identity`.
+//! between both, the order could be exchanged unseen: there a new segment begins. `identity` joins segments and determines their
+//! orientation.
 
 mod frame_jump;
 mod identity;
@@ -222,7 +222,7 @@ pub(super) fn follow<'a>(
         && followed.contested.is_none()
         && followed.rows.iter().any(|row| row.labels.is_some());
     followed.contested = followed.contested.filter(|_| named);
-    // What shows the joint angles is no ghost.
+    // A reflector that measures a joint angle is not a ghost.
     let own = 2 + reflectors.sides.as_ref().map_or(0, |sides| sides.len());
     let mut candidates = Vec::new();
     let mut crowded = Vec::with_capacity(followed.rows.len());
@@ -277,7 +277,7 @@ fn walk(search: &Search<'_>) -> (Vec<Row>, Vec<usize>) {
             continue;
         }
         let Some((front, back)) = found else {
-            // Who is another point stays one; who is new may yet be a reflector.
+            // Another point remains one; a new point may still be a reflector.
             match &state {
                 None => others.clear(),
                 Some(state) => {

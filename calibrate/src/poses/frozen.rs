@@ -1,5 +1,5 @@
-//! Rows in which the reflectors are held: the tracking system lost them, or a file was mended by repeating the last row. They
-//! are copies of a measurement, not measurements: a robot that swims on is not where they say.
+//! Rows with held reflectors: the tracking system lost them, or a file was repaired by repeating the last row. They are copies of
+//! a measurement, not measurements: a robot that swims on is at another place.
 
 use nalgebra::Vector3;
 
@@ -9,24 +9,24 @@ use crate::median::median;
 /// More copies than this in a row are held. Noise makes each row its own, but that of good cameras before a thing at rest is
 /// a few of their digits only, and two rows of three repeat by chance.
 const MOST_SAME: usize = 2;
-/// Where more than this share of single steps from row to row is none, rows repeat anyway: coarse digits, or a rate that was
-/// raised by doubling rows.
+/// If more than this share of single steps from row to row is zero, rows repeat for other reasons: coarse digits, or a rate that
+/// was raised by doubling rows.
 const MOST_SINGLE: f64 = 0.05;
-/// A robot that stood still leaves with about its next steps; one that was held must catch up.
+/// After a true rest the next steps are of the usual size; after a hold they are larger, by this factor at least.
 const CATCHES_UP: f64 = 1.5;
-/// Steps after a held stretch that are looked at.
+/// Steps after a held stretch that are compared.
 const NEXT: usize = 3;
-/// Below this share of the usual step there is no noise: a recording by calculation, in which rest repeats as well.
+/// Below this share of the usual step there is no noise: a computed recording, in which rest repeats as well.
 const NO_NOISE: f64 = 0.3;
 
-/// Rows that were held, and in how many stretches.
+/// Held rows, and number of stretches.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Frozen {
     pub(super) rows: usize,
     pub(super) stretches: usize,
 }
 
-/// Takes the copies out of the rows: a gap is left.
+/// Removes the copies, which leaves a gap.
 pub(super) fn take_frozen(rows: &mut Vec<Row>) -> Frozen {
     let copies = copies(rows);
     let mut at = copies.iter().flat_map(|(from, until)| *from..*until);

@@ -15,20 +15,19 @@ pub struct Jump {
     pub after_s: f64,
     /// Displacement of the middle link's centre \[m\].
     pub moved_m: f64,
-    /// By how much it was turned \[rad\].
+    /// Rotation \[rad\].
     pub turned_rad: f64,
 }
 
-/// Samples on either side that must agree that it is one.
+/// Samples on either side that must agree on the jump.
 const SIDE: usize = 5;
-/// A jump is longer than this share of the reflectors' distance,
+/// Least length of a jump, as a share of the reflectors' distance.
 const LEAST: f64 = 0.05;
-/// than so many usual ways from frame to frame, which noise may be most of,
+/// Least length of a jump, in usual steps from frame to frame, which may be mostly noise.
 const USUAL: f64 = 6.0;
-/// and than so many times the way at the speed there: from frame to frame, and over a gap, where the speed is that of all of
-/// the run.
+/// Least length of a jump, in steps at the local speed: from frame to frame, and over a gap, with the speed of the whole run.
 const SPEEDS: (f64, f64) = (4.0, 2.0);
-/// Over how long speeds are taken \[s\].
+/// Interval over which speeds are averaged \[s\].
 const SPEED_S: f64 = 0.5;
 
 /// The jumps among samples, in time. `distance_m` is the reflectors', by which turns are weighed.

@@ -17,7 +17,7 @@ pub struct Plane {
     pub rms_m: f64,
     /// `true` if the points determine the plane; if not, it is the coordinate plane that they leave least.
     pub fitted: bool,
-    /// Which of the file's axes x and y are nearest to, and which the normal: `(x, y) = (Z, X), normal Y`.
+    /// The file's axes that are nearest to x, y and the normal: `(x, y) = (Z, X), normal Y`.
     pub map: String,
 }
 

@@ -44,7 +44,7 @@ pub enum PoseWarning {
     Jumps(Vec<Jump>),
     /// The names of front and back are exchanged in such a share of the run that the right ones are undetermined.
     LabelsContested {
-        /// Where those are that fewer rows have.
+        /// Rows of the stretches that fewer rows have.
         stretches: Vec<Stretch>,
         /// Their share of the rows that have names.
         share: f64,

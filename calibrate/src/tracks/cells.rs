@@ -12,7 +12,7 @@ use super::{TrackError, TrackProblem};
 pub(super) struct Cell<'a> {
     /// Trimmed; a doubled quote inside quotes is still doubled.
     pub(super) raw: &'a str,
-    /// Where it begins in its line.
+    /// Offset of the cell in its line.
     pub(super) at: usize,
 }
 
@@ -39,7 +39,7 @@ pub(super) fn cell_at<'a>(cells: &[Cell<'a>], column: usize) -> Cell<'a> {
         .unwrap_or(Cell { raw: "", at: 0 })
 }
 
-/// Where a line's cells are. Kept from line to line, so that rows of data cost no allocation.
+/// Positions of a line's cells. Kept from line to line, so that rows of data cost no allocation.
 #[derive(Debug, Default)]
 pub(super) struct Cells {
     /// First byte and the byte after the last, quotes left out.
@@ -169,7 +169,7 @@ pub(super) fn split<'a>(
         .collect())
 }
 
-/// Where the quote is that closes the one at `open`.
+/// Offset of the quote that closes the one at `open`.
 fn closing_quote(line: &Line<'_>, open: usize, file: &Path) -> Result<usize, TrackError> {
     let bytes = line.text.as_bytes();
     let mut at = open + 1;

@@ -1,4 +1,4 @@
-//! Which format is this? Decided by what the first lines say, never by the file's name.
+//! Detection of the format from the first lines, never from the file's name.
 
 use std::path::Path;
 
@@ -38,7 +38,7 @@ pub(super) enum Detected {
     Table(TableLayout),
 }
 
-/// Where a table's header is, and what separates its cells.
+/// Position of a table's header, and the separator of its cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct TableLayout {
     /// Delimiter of the cells.

@@ -167,7 +167,7 @@ pub enum TrackProblem {
     /// A row that the header must have is not there.
     #[error("the header has no {row} row; export the file again with its header")]
     NoHeaderRow {
-        /// Which row.
+        /// Kind of row.
         row: &'static str,
     },
     /// The second column is not the time.
@@ -179,7 +179,7 @@ pub enum TrackProblem {
     /// The first row lacks a key.
     #[error("the first row has no `{key}`; export the file again with its header")]
     NoKey {
-        /// Which key.
+        /// Name of the key.
         key: &'static str,
     },
     /// A unit of length that is not known; guessing one would make every length wrong.
@@ -297,7 +297,7 @@ pub enum TrackProblem {
     UnknownXml {
         /// The root element's name.
         root: String,
-        /// Where its program exports text.
+        /// Menu path of the text export in its program.
         hint: Option<&'static str>,
     },
     /// XML that cannot be parsed.

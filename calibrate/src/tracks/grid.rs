@@ -21,7 +21,7 @@ use notes::Notes;
 /// Largest angle that passes for radians if nothing says the unit.
 pub(super) const LARGEST_ANGLE: f64 = 2.0 * std::f64::consts::PI + 1e-3;
 
-/// Where a row's time comes from.
+/// Source of a row's time.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Clock {
     /// Frame number over rate: the time column is rounded, and is only held against it.
@@ -174,7 +174,7 @@ struct Reader<'f> {
     turns: Vec<Option<[f64; 4]>>,
     notes: Notes,
     body: Body,
-    /// Where frame numbers failed: a stamp and the time that was given to it. From there on stamps count.
+    /// Failure of the frame numbers: a stamp and the time assigned to it. From there on stamps count.
     stamps_from: Option<(f64, f64)>,
     /// `true` if the rate is the user's, from which the time column may differ.
     rate_is_given: bool,
@@ -182,7 +182,7 @@ struct Reader<'f> {
     extent: Option<usize>,
     /// The day of the first stamp that is a date.
     first_day: Option<i64>,
-    /// Which places matter, if not all do.
+    /// Places to keep; `None` keeps all.
     nearby: Option<Nearby>,
 }
 
@@ -472,8 +472,8 @@ impl Reader<'_> {
     }
 }
 
-/// That a row has the cells that the header asks for and not one more than the rows before it, blank ones too: a cell that was
-/// lost or put in shifts all that follow.
+/// Checks that a row has as many cells as the header and as the rows before it, blank ones included: a missing or extra cell
+/// shifts all that follow.
 pub(super) fn row_length(
     line: &Line<'_>,
     cells: &Cells,

@@ -10,7 +10,7 @@ use super::{Place, TrackError, TrackProblem};
 const LONGEST: usize = 4 << 20;
 /// Lines that are kept: the longest header (a comment block) has 45.
 const HEAD_LINES: usize = 400;
-/// Where lines are long, fewer are kept: of a wide header's 41 rows all, and no more once they are this large \[bytes\].
+/// Limits of the lines that are kept: 50 lines (a wide header has 41 rows), and no more once they have this size \[bytes\].
 const HEAD: (usize, usize) = (50, 4 << 20);
 
 /// Delimiter between two cells.

@@ -17,8 +17,8 @@ pub(super) enum Number {
     Wrong,
 }
 
-/// Which decimal sign a file uses. The first number that has one settles it: `1,234` is 1.234 in a file of decimal commas,
-/// and in one of decimal points somebody's thousand.
+/// Decimal sign of a file. The first number with a sign decides: `1,234` is 1.234 in a file with decimal commas, and 1234 in one
+/// with decimal points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Decimals {
     /// Points only: the comma stands between cells.

@@ -13,7 +13,7 @@ pub struct TrackOptions {
     pub metres_per_unit: Option<f64>,
     /// Rows a second: needed for files with frame numbers and no times, and wins over what any file says.
     pub rate_hz: Option<f64>,
-    /// Which of the file's axes are the tank's x and y.
+    /// The file's axes that are the tank's x and y.
     pub axes: Option<Axes>,
     /// The least likelihood that counts (`DeepLabCut`); 0.9 unless said.
     pub likelihood: Option<f64>,
@@ -71,7 +71,7 @@ impl UsedPoints {
         }
     }
 
-    /// The usual names of two reflectors so far apart \[m\].
+    /// The usual names of two reflectors at this distance \[m\].
     pub fn usual(distance_m: f64) -> Self {
         let named = |name: &str| PointName::Named(name.to_owned());
         Self {

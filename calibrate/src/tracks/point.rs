@@ -149,7 +149,7 @@ impl TrackPoint {
         self.keeps = keeps;
     }
 
-    /// Where the point was in this row \[m\], in the file's own axes; `None` where it is missing.
+    /// Position of the point in this row \[m\], in the file's own axes. Returns `None` if it is missing.
     pub fn position(&self, row: usize) -> Option<Vector3<f64>> {
         let place = self.index(row)?;
         self.places.get(place).copied().map(Vector3::from)

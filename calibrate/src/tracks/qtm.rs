@@ -146,7 +146,7 @@ const BODY: [&str; 16] = [
     "X", "Y", "Z", "Roll", "Pitch", "Yaw", "Residual", "Rot[0]", "Rot[1]", "Rot[2]", "Rot[3]",
     "Rot[4]", "Rot[5]", "Rot[6]", "Rot[7]", "Rot[8]",
 ];
-/// Where the matrix begins among them.
+/// Index of the first element of the matrix among them.
 const MATRIX: usize = 7;
 
 /// Columns of rigid bodies, which stand one after the other: the title of the first column begins with the body's name, or not.

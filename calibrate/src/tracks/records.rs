@@ -1,8 +1,8 @@
-//! Record lines: Tracking Tools 2.x (1.0) and Motive 1.x (1.1). The first word says what a line is, and its own counts say how
-//! many fields it has; every line is held against them.
+//! Record lines: Tracking Tools 2.x (1.0) and Motive 1.x (1.1). The first word gives the kind of line, and its own counts give
+//! the number of its fields; every line is checked against them.
 //!
-//! The same word (`trackable`, `rigidbody`) defines a body before the first frame, and tells more about one after it. What a
-//! body's record calls its point cloud are measured places under the body's names; its solved places are kept from the last
+//! The same word (`trackable`, `rigidbody`) defines a body before the first frame, and adds data about one after it. The point
+//! cloud of a body's record consists of measured places under the body's names; its solved places are kept from the last
 //! sight of the body, so they count only while it is tracked. Markers of a frame have no identity in version 1.0 (their order
 //! changes from frame to frame): they are listed by their place in the list, and following ignores those names.
 

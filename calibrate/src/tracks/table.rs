@@ -3,8 +3,8 @@
 //! * Time: a column `t`, `time`, `time_s`, `seconds`, `Time (Seconds)`, …; else `frame` together with [`TrackOptions::rate_hz`].
 //! * Points: columns whose names are the same but for one letter x, y or z at either end (`x1`/`y1` → `1`, `front_x`/`front_y`
 //!   → `front`); a bare `x`/`y` is the point `x,y`. Other pairs are named by the caller ([`TrackOptions::pairs`]).
-//! * Unit: metres, unless a column's name ends in a unit (`x1_mm`, `x1 [cm]`, `x1_px`) or the caller gives a scale. Whether
-//!   the reflectors then have their distance is asked later, so that pixels never pass for metres.
+//! * Unit: metres, unless a column's name ends in a unit (`x1_mm`, `x1 [cm]`, `x1_px`) or the caller gives a scale. The distance
+//!   of the reflectors is checked later, so that pixels are never taken for metres.
 //! * Blank or NaN is missing. Columns that belong to nothing are not read.
 
 mod header;

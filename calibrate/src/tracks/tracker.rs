@@ -1,5 +1,5 @@
-//! Text of Tracker, the video tool: one track under its name, several under `#multi:`, or exports pasted side by side, each
-//! with times of its own. What the lengths are, only the user knows: Tracker writes what its calibration stick was told.
+//! Text of Tracker, the video tool: one track under its name, several under `#multi:`, or exports pasted side by side, each with
+//! times of its own. The unit of length is known only to the user: Tracker writes the one of its calibration stick.
 
 use std::ops::Range;
 use std::path::Path;

@@ -107,7 +107,7 @@ pub enum TrackWarning {
 }
 
 impl TrackWarning {
-    /// Where the header's count is not the count of rows.
+    /// Warning if the header's count differs from the number of rows.
     pub(super) fn frame_count(header: Option<u64>, rows: usize) -> Option<Self> {
         let header = header.filter(|header| *header != rows as u64)?;
         Some(Self::FrameCount { header, rows })

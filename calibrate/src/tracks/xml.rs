@@ -59,7 +59,7 @@ pub(super) fn read(lines: &mut Lines<'_>, reading: &Reading<'_>) -> Result<Draft
     }
 }
 
-/// Where the program that writes such XML exports text.
+/// Menu path of the text export in the program that writes such XML.
 fn hint(root: &str) -> Option<&'static str> {
     match root {
         "Workbook" => Some("a spreadsheet: save it as CSV"),

@@ -1,4 +1,4 @@
-//! Do the intervals hold what they promise? Campaigns of a twin with everything by chance, and the truth beside the intervals.
+//! Coverage of the intervals: campaigns of a twin with random errors, compared with the truth.
 
 use crate::twin_campaigns;
 
@@ -15,7 +15,7 @@ use twin_campaigns::Laboratory;
 
 const LEVEL: f64 = 0.9;
 
-/// What became of campaigns without fault.
+/// Outcomes of campaigns without a fault.
 #[derive(Debug, Default)]
 struct Count {
     /// Intervals of `r_s` and of χ that hold the truth: of the paper's fit, by profile likelihood, by bootstrap.

@@ -1,5 +1,5 @@
-//! What goes wrong in laboratories, and what is told of it: runs that swim the other way, drift, offsets, walls, tilt, lag, dead bands.
-//! The laboratory shares nothing with the house (`lab`).
+//! Usual faults of laboratories and the warnings about them: runs in the opposite direction, drift, offsets, walls, tilt, lag,
+//! dead bands. The laboratory (`lab`) shares no code with the project.
 
 use crate::judged;
 use crate::lab;
@@ -63,7 +63,7 @@ fn three_runs_of_four_are_too_many() {
     assert!(error.to_string().contains("run1.csv"), "{error}");
 }
 
-/// A run that the campaign excludes is not looked at, and is told.
+/// A run that the campaign excludes is not read, and is reported as excluded.
 #[test]
 fn an_excluded_run_is_kept_out_by_name() {
     let lab = Lab::sparse(5);
@@ -78,7 +78,8 @@ fn an_excluded_run_is_kept_out_by_name() {
     assert!((found.fit.chi / 2.93 - 1.0).abs() < 0.02);
 }
 
-/// Which joint is off by which angle: symmetric values cannot tell front from back, Y and the net turn can.
+/// The joint and the angle of an offset are identified: symmetric values cannot distinguish front from back, Y and the net turn
+/// can.
 #[test]
 fn offsets_are_told_apart() {
     let mut lab = Lab::sparse(6);
@@ -102,8 +103,8 @@ fn offsets_are_told_apart() {
     }
 }
 
-/// Servos that turn 3 % less: the gain explains the runs best, and is told after every fit; c_t and offsets explain them worse by
-/// far, and say so by their likelihood.
+/// Servos that turn 3 % less: the gain explains the runs best, and is reported after every fit; c_t and offsets explain them much
+/// worse, as their likelihoods show.
 #[test]
 fn a_wrong_explanation_is_told_apart() {
     let judged = Judged::of(&Lab::sparse(7).with_gain(0.97)).unwrap();
@@ -135,7 +136,7 @@ fn a_wrong_explanation_is_told_apart() {
     );
 }
 
-/// A table of what is told and what comes out.
+/// A table of faults, warnings and results.
 #[test]
 #[ignore = "a table of twenty campaigns"]
 fn a_table_of_faults() {

@@ -1,5 +1,5 @@
-//! The fit against the truth: exact data, noisy data over seeds, servos, and data that oppose the model. How often intervals
-//! hold the truth is counted in `coverage.rs`.
+//! The fit compared with the truth: exact data, noisy data over seeds, servos, and data that contradict the model. The coverage
+//! of intervals is measured in `coverage.rs`.
 
 use crate::tank;
 
@@ -20,7 +20,7 @@ fn robot() -> Tank {
     Tank::new(Swimmer::robot(), AnyGait::circle(1.0))
 }
 
-/// How far the sphere radius and χ are off, relatively.
+/// Relative errors of the sphere radius and χ.
 fn errors(tank: &Tank, text: fn(&Tank) -> String, reflectors: Reflectors) -> (f64, f64) {
     let (campaign, data) = campaign(tank, &AMPLITUDES, text, reflectors);
     let fit = calibrate_campaign(&campaign, &data, FitOptions::default())
@@ -33,7 +33,7 @@ fn errors(tank: &Tank, text: fn(&Tank) -> String, reflectors: Reflectors) -> (f6
 
 #[test]
 fn exact_data_give_exact_parameters() {
-    // Every digit is in the table; the tank's own steps are what is left.
+    // Every digit is in the table; the remaining error is that of the tank's own steps.
     let tank = Tank {
         steps: 200,
         ..robot().perfect()
@@ -282,7 +282,7 @@ fn shift_by_drag(truth: &Swimmer<f64>, share: f64) -> [f64; 2] {
     ]
 }
 
-/// Bootstrap and leaving out ask polynomials instead of the model: they are held against fits without the shortcut.
+/// Bootstrap and leave-one-out use polynomials instead of the model: they agree with fits without the shortcut.
 #[test]
 fn refits_on_the_surface_are_refits() {
     let tank = Tank {

@@ -123,8 +123,8 @@ fn reflectors_beside_the_middle_are_found() {
     assert_holds(fit.parameter("chi").unwrap(), laboratory.swimmer.chi);
 }
 
-/// Seen from afar a sphere is its drag 6πμ `r_s`: kinematics know it only over `c_t`. Its resistance to rotation goes with `r_s`³, and
-/// that of a large sphere tells both apart.
+/// At a distance a sphere is its drag 6πμ `r_s`: kinematics determine it only relative to `c_t`. Its resistance to rotation is
+/// proportional to `r_s`³, and that of a large sphere distinguishes both.
 #[test]
 fn a_small_sphere_cannot_be_told_from_the_tangential_drag() {
     let alike = |sphere_radius: f64| {

@@ -261,7 +261,7 @@ fn how_long_a_campaign_takes() {
     }
 }
 
-/// Writes a campaign with measured joints, swaps, ghosts and a run that is told into a folder, for eyes.
+/// Writes a campaign with measured joints, swaps, ghosts and a reported run into a folder, for inspection.
 #[test]
 #[ignore = "writes where LAB_FOLDER says"]
 fn a_campaign_for_eyes() {

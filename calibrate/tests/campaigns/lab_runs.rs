@@ -1,5 +1,5 @@
-//! Runs in which something went wrong, from a laboratory that shares nothing with the house: what is told of each, and that
-//! identity follows geometry and travel.
+//! Runs with faults, from a laboratory that shares no code with the project: the warnings about each, and that identity follows
+//! geometry and travel.
 
 use crate::lab;
 

@@ -1,4 +1,4 @@
-//! Reflectors on the side links show Φ(t) as it was: servos that do as nobody says cost nothing then, and what they did is told.
+//! Reflectors on the side links measure Φ(t): servos with unknown errors then do no harm, and their errors are reported.
 
 use crate::judged;
 use crate::lab;

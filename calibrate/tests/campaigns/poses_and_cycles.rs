@@ -209,7 +209,7 @@ fn short_gaps_cost_a_gait_with_corners_next_to_nothing() {
 
 #[test]
 fn labels_wrong_for_most_of_the_time_win_and_that_is_said_nowhere_else() {
-    // Labels are the only thing that tells the ends apart: where they are wrong throughout, so is the heading, by half a turn.
+    // Labels are the only information about the ends: if they are wrong throughout, so is the heading, by half a turn.
     let tank = Tank {
         swaps: vec![(0, 100_000)],
         ..robot(1.2)
@@ -239,7 +239,7 @@ fn reflectors_without_names_are_found() {
 
 #[test]
 fn a_place_tells_front_from_back() {
-    // The first frame's reflectors are at (0.4, -0.2) ± 35.5 mm along 0.8 rad. The swimmer is told to run backwards, so that the
+    // The first frame's reflectors are at (0.4, -0.2) ± 35.5 mm along 0.8 rad. The swimmer is made to run backwards, so that the
     // direction of travel would be wrong.
     let tank = robot(1.2);
     let mut run = tank.run_of(&tank.table());
@@ -388,7 +388,7 @@ fn the_period_is_refined() {
     assert!(error.to_string().contains("about every 10.00 s"), "{error}");
 }
 
-/// What is said about a good recording whose period was written down wrongly.
+/// Warnings about a good recording whose period was written down wrongly.
 fn said_of_period(tank: &Tank, times: f64) -> (bool, String) {
     let mut run = tank.run();
     run.period_s = times * tank.period_s;
@@ -528,7 +528,7 @@ fn what_gives_no_cycles_says_why() {
 
 #[test]
 fn reflectors_may_sit_anywhere_on_the_link() {
-    // The same points, told to be a quarter of the way along and aside: the pose is that of another body, rigidly shifted.
+    // The same points, declared a quarter of the way along and aside: the pose is that of another body, rigidly shifted.
     let tank = Tank {
         noise: 0.0,
         dropout: 0.0,
@@ -579,7 +579,7 @@ fn a_recording_that_ends_with_the_play_keeps_its_last_cycle() {
     assert_eq!((cycles.cycles.len(), cycles.left_out.len()), (4, 1));
 }
 
-/// What one camera over the tank gives: pixels of half a millimetre, y down, the origin in a corner.
+/// File of one camera over the tank: pixels of half a millimetre, y down, the origin in a corner.
 fn pixels(tank: &Tank) -> String {
     let table = tank.table();
     let mut lines = table.lines();
@@ -627,7 +627,7 @@ fn one_camera_gives_poses_once_its_scale_is_known() {
         PointName::Columns("x1_px".into(), "y1_px".into()),
         PointName::Columns("x2_px".into(), "y2_px".into()),
     );
-    // Without a scale there are no poses, but the scale that the reflectors' distance asks for.
+    // Without a scale there are no poses; the error proposes the scale that the reflectors' distance implies.
     let error = poses(&read(None), &reflectors, &PoseOptions::default()).unwrap_err();
     let PoseError::NoScale {
         scale: Some(scale), ..
@@ -691,7 +691,7 @@ fn a_frame_that_jumps_between_two_cycles_costs_one_step() {
         (a.mean - b.mean).abs() < 3e-5 && a.sd < 2e-4
     };
     for (turn, by, jumps) in [
-        // By far; by less than following bears from frame to frame; by so little that only the step tells.
+        // A large jump; one below the limit of following from frame to frame; one so small that only the step shows it.
         (std::f64::consts::FRAC_PI_2, Vector2::new(0.1, 0.2), true),
         (0.0, Vector2::new(0.012, 0.005), true),
         (0.0, Vector2::new(0.003, 0.0), false),

@@ -1,5 +1,5 @@
-//! What is the answer worth where all cycles of all runs are wrong alike? Campaigns of a laboratory that shares nothing with the
-//! house (`lab`), and the truth beside what is said of them.
+//! Results of campaigns with errors that all cycles of all runs share. The laboratory (`lab`) shares no code with the project,
+//! and the truth is compared with the report.
 
 use crate::judged;
 use crate::lab;
@@ -16,7 +16,7 @@ const RUNS: [&[f64]; 3] = [
     &[30.0, 45.0, 60.0, 70.0, 80.0, 90.0, 100.0, 110.0],
 ];
 
-/// Of `swimmer calibrate` where none is asked for.
+/// Default level of `swimmer calibrate`.
 const USUAL_LEVEL: f64 = 0.95;
 
 /// Either the truth is within the interval with systematics, or the answer is refused and the gain named; and with the gain

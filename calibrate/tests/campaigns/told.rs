@@ -1,5 +1,5 @@
-//! What is told and what comes out where something is wrong in a laboratory: a table, compared with `tests/told/table.txt`, so that
-//! a change of behaviour is a change of that file.
+//! Warnings and results for faults of a laboratory: a table, compared with `tests/told/table.txt`, so that a change of behaviour
+//! is a change of that file.
 
 use crate::judged;
 use crate::lab;
@@ -14,7 +14,7 @@ use lab::Lab;
 const SIX: &[f64] = &[30.0, 50.0, 70.0, 85.0, 100.0, 110.0];
 const FOUR: &[f64] = &[40.0, 65.0, 90.0, 110.0];
 
-/// What is wrong, and how many runs there are.
+/// Name of a fault, amplitudes of the runs, and the fault.
 type Case = (&'static str, &'static [f64], fn(&mut Lab));
 
 fn dead_band(lab: &mut Lab, degrees: f64) {
@@ -86,7 +86,7 @@ const CASES: &[Case] = &[
 
 const NOISES: [f64; 2] = [3e-4, 1e-3];
 
-/// What a line says, and whether it is right: the truth within, or refused.
+/// Line of the table, and whether it is right: the truth within the intervals, or a refusal.
 fn line(case: &Case, noise: f64) -> (String, bool) {
     let (name, runs, change) = case;
     let mut lab = Lab::sparse(1).with_runs(runs).with_noise(noise);

@@ -1,4 +1,4 @@
-//! Results instead of tracks: a figure's points, an old thesis' table, and both beside tracked runs.
+//! Reported results instead of tracks: a figure's points, an old thesis' table, and both together with tracked runs.
 
 use crate::judged;
 use crate::lab;
@@ -15,7 +15,7 @@ use lab::Lab;
 use statrs::distribution::{Binomial, DiscreteCDF};
 use swimmer_files::{AnyGait, Campaign, SwimmerFile};
 
-/// Fitted, with everything that a campaign is asked.
+/// Fits a campaign with all options.
 fn fitted(campaign: &Campaign, data: &CampaignData) -> CampaignFit {
     let found = calibrate_campaign(campaign, data, FitOptions { level: LEVEL }).unwrap();
     let options = EvidenceOptions {
@@ -92,7 +92,7 @@ fn told_results_fit_as_the_tracks_did() {
     let width = |fit: &CampaignFit| fit.fit.intervals.chi[1] - fit.fit.intervals.chi[0];
     near(width(&by_results), width(&by_tracks), 0.5);
 
-    // Three tracked, three told, and one of these excluded.
+    // Three tracked runs, three reported ones, and one of these excluded.
     let text = lab.campaign_text("robot-slender");
     let cut = text.match_indices("[[run]]").nth(3).unwrap().0;
     let rest =
@@ -113,8 +113,8 @@ fn told_results_fit_as_the_tracks_did() {
 }
 
 /// The paper's figure: X of circles over the amplitude, with its deviation between cycles, and nothing else. The paper prints no
-/// numbers beside it, so these are its model's at its parameters (r_s 6.92 cm, χ 3.598), scattered as its bars are wide; with and without what else was measured, each read off to a tenth of a millimetre and a fifth
-/// of a degree.
+/// numbers with it, so these are its model's at its parameters (r_s 6.92 cm, χ 3.598), scattered by the width of its error bars;
+/// with and without the other measured quantities, each rounded to a tenth of a millimetre and a fifth of a degree.
 #[test]
 fn a_figure_of_x_over_the_amplitude() {
     let robot = SwimmerFile::preset("robot").unwrap();

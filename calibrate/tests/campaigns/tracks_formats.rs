@@ -25,7 +25,7 @@ fn third(row: usize) -> Option<[f64; 2]> {
         .then_some([0.5 + 0.001 * row as f64, 0.4])
 }
 
-/// How a format writes the motion.
+/// One format's recording of the motion.
 struct Sample {
     file: &'static str,
     format: &'static str,
@@ -225,7 +225,7 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/formats")
 }
 
-/// What a user would say of these files: a scale where they have no unit of their own, a rate where they have no time.
+/// Options that a user would give for these files: a scale if they have no unit, a rate if they have no time.
 fn options(sample: &Sample) -> TrackOptions {
     TrackOptions {
         metres_per_unit: match sample.unit {

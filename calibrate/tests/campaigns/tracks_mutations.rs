@@ -322,7 +322,7 @@ fn unlabeled_names() {
 
 #[test]
 fn columns_that_are_no_position() {
-    // Rule 4: a marker size beside the axes, as Motive 3 exports it; rule 13: Euler angles instead of a quaternion.
+    // Rule 4: a marker size after the axes, as Motive 3 exports it; rule 13: Euler angles instead of a quaternion.
     let sized = per_cell(|line, cells| match line {
         0 | 1 => {}
         5 => cells.insert(17, "Size".into()),

@@ -1,4 +1,4 @@
-//! Damaged files: an error, or what is left with a warning, never a panic and never a wrong number without a word.
+//! Damaged files: an error, or the remaining data with a warning, never a panic and never a wrong number without a warning.
 //!
 //! Every kind of damage meets every sample at several seeded places. The outcomes are a table that is compared with
 //! `tests/mutilated/outcomes.txt`, so that a change of behaviour is a change of that file.
@@ -48,7 +48,7 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests")
 }
 
-/// What a user must say of a sample, and no more: a rate wins over the file's own.
+/// Options that a user must give for a sample, and no more: a rate overrides the file's own.
 fn options(sample: &str) -> TrackOptions {
     TrackOptions {
         rate_hz: matches!(sample, s if s.starts_with("deeplabcut") || s.starts_with("sleap"))
@@ -61,7 +61,7 @@ fn same_point(a: &TrackPoint, b: &TrackPoint) -> bool {
     (&a.name, a.kind) == (&b.name, b.kind)
 }
 
-/// Whether every place of a point is one of the original's at the same time.
+/// `true` if every place of a point is one of the original's at the same time.
 fn true_to(point: &TrackPoint, file: &TrackFile, other: &TrackPoint, original: &TrackFile) -> bool {
     // A unit that went missing leaves lengths as they stand in the file, and no poses are made of them.
     let metres = match (file.unit.metres(), original.unit.metres()) {
@@ -212,7 +212,7 @@ impl Read for Endless {
     }
 }
 
-/// Peak memory of this process \[bytes\], where the system tells it.
+/// Peak memory of this process \[bytes\], if the system reports it.
 fn peak() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;

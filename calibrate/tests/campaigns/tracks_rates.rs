@@ -19,7 +19,7 @@ fn read(text: &str) -> TrackFile {
     read_at(text, None).unwrap()
 }
 
-/// A table of a point that moves 1 mm a frame, its times written with so many digits.
+/// A table of a point that moves 1 mm a frame, its times written with `digits` digits.
 fn table(rate_hz: f64, digits: usize, head: &str, cut: &str) -> String {
     let mut out = head.to_owned();
     for frame in 0..300 {
@@ -78,7 +78,7 @@ fn the_users_rate_wins_and_the_file_says_so() {
         file.warnings[..],
         [TrackWarning::RateOverridden { file_hz, .. }] if (file_hz - 100.0).abs() < 1e-12
     ));
-    // And none where it is the file's own.
+    // No warning if it is the file's own rate.
     assert!(read_at(sample, Some(100.0)).unwrap().warnings.is_empty());
 }
 

@@ -90,8 +90,8 @@ impl Controller {
         Pose::new(to.x - drift.x, to.y - drift.y, to.theta)
     }
 
-    /// What is left of the chain before, adjusted to where it has led so far; as it is if no adjustment is found and it leads near
-    /// the target.
+    /// Remainder of the previous chain, adjusted to the pose that it has led to; unchanged if no adjustment is found and it ends
+    /// near the target.
     fn adjusted(&self, here: &Pose<f64>, to: &Pose<f64>, kept: &[Step]) -> Option<Vec<Step>> {
         if kept.is_empty() {
             return None;

@@ -16,7 +16,7 @@ pub enum Ending {
     },
     /// The robot was not seen.
     TrackingLost {
-        /// For so long \[s\].
+        /// Duration \[s\].
         seconds: f64,
     },
     /// The robot came nearer to a wall than the margin.

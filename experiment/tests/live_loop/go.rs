@@ -42,7 +42,7 @@ fn controller(goal: Goal) -> Controller {
     Controller::new(planner(), goal, Options::default(), 0.0)
 }
 
-/// Where the planned chain leads if nobody looks: the cycles follow each other without a rest.
+/// End of the planned chain without feedback: the cycles follow each other without a rest.
 fn open_loop(seed: u64) -> [f64; 2] {
     let (start, to) = trip(seed);
     let planner = planner();

@@ -18,7 +18,7 @@ use crate::{Frame, Mapping};
 
 /// Ticks of the camera clock per second.
 const TICKS_PER_S: u64 = 1_000_000;
-/// A unicast client that is silent for so long is gone \[s\].
+/// A unicast client that is silent for longer is dropped \[s\].
 const SILENT_S: f64 = 10.0;
 /// Unicast clients at a time.
 const MOST_CLIENTS: usize = 16;
@@ -75,7 +75,7 @@ impl Server {
         self.clients.len()
     }
 
-    /// What the server says of itself.
+    /// Name and versions that the server reports.
     pub fn info(&self) -> ServerInfo {
         ServerInfo {
             application_name: "swimmer twin".to_owned(),

@@ -15,7 +15,7 @@ use crate::{Frame, Mapping, SourceError};
 const LARGEST: usize = 65_507;
 /// A read waits at most so long: until the stop flag is looked at, and until the next keep-alive.
 const WAIT: Duration = Duration::from_millis(20);
-/// Without a reply or a multicast frame for so long there is no server \[s\].
+/// Longest wait for a reply or a multicast frame \[s\].
 const PATIENCE_S: f64 = 5.0;
 /// Datagrams that a server takes in one turn.
 const TURN: usize = 64;

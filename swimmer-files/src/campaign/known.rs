@@ -1,4 +1,4 @@
-//! What a laboratory knows beforehand, and how well: the `[known]` table, whose values are written as `"1.00 ± 0.01"`.
+//! Prior knowledge of a laboratory with its uncertainty: the `[known]` table, whose values are written as `"1.00 ± 0.01"`.
 
 use std::str::FromStr;
 
@@ -48,10 +48,10 @@ impl KnownValue {
     }
 }
 
-/// What is known beforehand of what a fit takes for granted.
+/// Prior knowledge of the quantities that a fit otherwise assumes.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Known {
-    /// `gain`: what the servos turn over what they are told.
+    /// `gain`: actual over commanded angle of the servos.
     pub gain: Option<KnownValue>,
     /// `camera_scale`: lengths as the cameras give them over true ones.
     pub camera_scale: Option<KnownValue>,

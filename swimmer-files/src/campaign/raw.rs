@@ -116,10 +116,10 @@ macro_rules! keys {
     };
 }
 
-/// One list of the numbers that may tell a run: keys of a `[[run]]`, and columns of a table.
+/// List of the numbers that may report a run: keys of a `[[run]]`, and columns of a table.
 macro_rules! numbers {
     ($($key:ident)+) => {
-        /// The numbers that may tell a run.
+        /// Keys of the numbers that may report a run.
         pub(super) const NUMBERS: [&str; 16] = [$(stringify!($key)),+];
 
         impl RawRun {

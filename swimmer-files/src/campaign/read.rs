@@ -248,7 +248,7 @@ fn run(
         .parse()
         .map_err(|cause| error(raw.gait.span().start, format!("gait: {cause}")))?;
     let (period_s, exclude) = (period(&raw, error)?, excluded(&raw, error)?);
-    // What says something about the log says nothing without it.
+    // Keys about the log need a log.
     if let (None, Some((name, place))) = (&raw.log, raw.of_log()) {
         let problem = format!("{name} is about the robot's log; name it by `log`");
         return Err(error(place, problem));

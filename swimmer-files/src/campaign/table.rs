@@ -103,7 +103,7 @@ fn cells(line: &str, separator: u8) -> StringRecord {
     reader.into_records().flatten().next().unwrap_or_default()
 }
 
-/// Whether these are columns of a table: else which is not, and why.
+/// Checks that these are columns of a table. Returns the index of the first invalid one, and the reason.
 fn columns(names: &StringRecord) -> Result<(), (usize, String)> {
     for (column, name) in names.iter().enumerate() {
         let known =

@@ -1,8 +1,8 @@
-//! Results that somebody wrote down instead of a track: what X, ΔY, Δθ of a run with their errors mean.
+//! Reported results instead of a track: X, ΔY, Δθ of a run with their errors.
 
 use std::path::PathBuf;
 
-/// A value of a run, and how sure it is.
+/// A value of a run with its uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ToldValue {
     /// Its mean over cycles.
@@ -13,7 +13,7 @@ pub struct ToldValue {
     pub se: Option<f64>,
 }
 
-/// What is told of a run, in m and rad; `None` for what is not.
+/// Reported results of a run, in m and rad; `None` for missing ones.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ToldRun {
     /// X.
@@ -26,13 +26,13 @@ pub struct ToldRun {
     pub delta_y: Option<ToldValue>,
     /// Δθ.
     pub delta_theta: Option<ToldValue>,
-    /// How many cycles the means are of.
+    /// Number of cycles that the means are taken over.
     pub cycles: Option<usize>,
-    /// The table that told it, if one did.
+    /// The table that they are from, if any.
     pub table: Option<PathBuf>,
 }
 
-/// The numbers' names without their `_sd` and `_se`, their units, and what these are in m or rad.
+/// Names of the numbers without their `_sd` and `_se`, their units, and the factors to m or rad.
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 const VALUES: [(&str, &str, f64); 5] = [
     ("x", "mm", 1e-3),
@@ -44,7 +44,7 @@ const VALUES: [(&str, &str, f64); 5] = [
 /// More cycles than any run has.
 const MOST_CYCLES: f64 = 1e6;
 
-/// What these numbers tell of a run: the name of the one that cannot be meant, and why.
+/// Results from the numbers of a run. Returns the key of the first invalid number, and the reason.
 pub(super) fn told(number: impl Fn(&str) -> Option<f64>) -> Result<ToldRun, (String, String)> {
     let cycles = match number("cycles") {
         None => None,

@@ -1,4 +1,4 @@
-//! What every link log holds, wherever its bytes go: channels, schemas, chunks of half a second.
+//! Common contents of every link log, independent of the output: channels, schemas, chunks of half a second.
 
 use std::collections::BTreeMap;
 use std::io::{Seek, Write};

@@ -9,7 +9,7 @@ use serde_json::{Map, Value, json};
 /// One frame as it crossed the wire.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LinkFrame {
-    /// Which way it went.
+    /// Direction of the frame.
     pub direction: Direction,
     /// When, on the host's clock \[ns\]; from which moment on is the caller's choice, the same for the whole log.
     pub host_time_ns: u64,
@@ -70,7 +70,7 @@ impl LinkFrame {
     }
 }
 
-/// What is read back of a frame's JSON; the rest is for people.
+/// The part of a frame's JSON that is read back; the rest is for people.
 #[derive(Deserialize)]
 struct Told<'a> {
     host_time_ns: u64,

@@ -1,9 +1,8 @@
-//! When the robot swam, by its own word: the plays of a link log with their periods and the starts of their cycles, on the
-//! robot's clock.
+//! Plays of a link log by the robot's own report: their periods and the starts of their cycles, on the robot's clock.
 //!
-//! Telemetry tells robot time, cycles done and the fraction of the cycle about 25 times a second, to the tick of 20 ms. A cycle
-//! counts as steady when all that was told of it lies on one line from its first to its last tenth: a pause, a swap or a stop
-//! in it bends the line.
+//! Telemetry reports robot time, completed cycles and the fraction of the cycle about 25 times a second, to the tick of 20 ms. A
+//! cycle counts as steady if all its telemetry lies on one line from its first to its last tenth: a pause, a swap or a stop bends
+//! the line.
 
 use link_protocol::{Direction, Message, Reply, Request, StateName, Telemetry};
 
@@ -12,23 +11,23 @@ use super::LinkFrame;
 /// One play, from its first cycle to the ramp back.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Play {
-    /// One cycle \[s of the robot's clock\].
+    /// Duration of one cycle \[s of the robot's clock\].
     pub period_s: f64,
-    /// When its first cycle began \[s of the robot's clock\].
+    /// Start of its first cycle \[s of the robot's clock\].
     pub started_s: f64,
-    /// When it was last told to play \[s of the robot's clock\].
+    /// Time of the last telemetry that reports it as playing \[s of the robot's clock\].
     pub ended_s: f64,
-    /// Starts of the cycles that went from beginning to end without a change of pace \[s of the robot's clock\].
+    /// Starts of the steady cycles \[s of the robot's clock\].
     pub cycle_starts: Vec<f64>,
-    /// When those began that did not \[s of the robot's clock\].
+    /// Starts of the other cycles \[s of the robot's clock\].
     pub unsteady: Vec<f64>,
-    /// What its joints were told while it played: the fraction of the cycle, and both angles \[rad\].
+    /// Commanded joint angles while it played: the fraction of the cycle, and both angles \[rad\].
     pub told: Vec<(f64, [f64; 2])>,
 }
 
-/// How far a steady cycle's telemetry may lie off its line \[s\]: two ticks.
+/// Largest distance of a steady cycle's telemetry from its line \[s\]: two ticks.
 const SLACK_S: f64 = 0.04;
-/// A cycle must have been told of up to this close to its ends, as a fraction of it.
+/// Largest distance of a cycle's first and last telemetry from its ends, as a fraction of the cycle.
 const TOLD: f64 = 0.1;
 
 /// The plays of a log, in their order. Telemetry before the period is known is passed over.

@@ -10,12 +10,13 @@ use super::records::{CHANNEL, CHUNK, FOOTER, MESSAGE, Records, channel, message,
 use super::{LinkFrame, LinkLogError};
 use crate::FileError;
 
-/// What a link log holds.
+/// Contents of a link log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinkLog {
     /// In the order in which they were written.
     pub frames: Vec<LinkFrame>,
-    /// Whether the log has its end. Without it whoever wrote it was killed, or the disk was full: the frames are those before.
+    /// `true` if the log has its end record. Without it the writer was killed, or the disk was full; all complete frames are
+    /// read.
     pub ended: bool,
 }
 
@@ -80,7 +81,7 @@ pub fn parse_link_log(bytes: &[u8], path: &Path) -> Result<LinkLog, LinkLogError
     })
 }
 
-/// What was read so far.
+/// Reader state with the frames read so far.
 struct Reading<'a> {
     path: &'a Path,
     /// Channels that hold frames; another program's topics in the same file are passed over.

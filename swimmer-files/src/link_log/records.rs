@@ -7,7 +7,7 @@ pub(super) const CHANNEL: u8 = 0x04;
 pub(super) const MESSAGE: u8 = 0x05;
 pub(super) const CHUNK: u8 = 0x06;
 
-/// Opcodes and records, as long as they are whole; what is left are bytes of none.
+/// Iterator over complete records with their opcodes; the remainder belongs to no record.
 pub(super) struct Records<'a>(pub(super) &'a [u8]);
 
 impl<'a> Iterator for Records<'a> {
@@ -21,7 +21,7 @@ impl<'a> Iterator for Records<'a> {
     }
 }
 
-/// What follows its own length of so many bytes.
+/// Contents of a field after its length of `LENGTH` bytes.
 fn field<'a, const LENGTH: usize>(bytes: &mut &'a [u8]) -> Option<&'a [u8]> {
     let (length, rest) = bytes.split_first_chunk::<LENGTH>()?;
     let mut number = [0; 8];
@@ -48,7 +48,7 @@ pub(super) fn message(record: &[u8]) -> Option<(u16, &[u8])> {
 /// The records of a chunk.
 ///
 /// # Errors
-/// What keeps them from being read.
+/// Reason why the chunk cannot be read.
 pub(super) fn of_chunk(record: &[u8]) -> Result<&[u8], String> {
     let parts = || -> Option<(&[u8], &[u8])> {
         // After two times, a length and a checksum.

@@ -30,7 +30,7 @@ pub struct LinkLogWriter {
     file: Option<File>,
     container: Option<Container<BufWriter<Growing>>>,
     path: PathBuf,
-    /// Whether the file was there before.
+    /// `true` if the file existed before.
     replaces: bool,
 }
 

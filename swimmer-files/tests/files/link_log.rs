@@ -39,7 +39,7 @@ fn every_frame_comes_back() {
     );
 }
 
-/// The container's reader tells of a damaged record with colours, frames and its own source.
+/// The container's reader reports a damaged record with colours, frames and its own source.
 #[test]
 fn a_damaged_log_is_told_of_in_one_plain_line() {
     let folder = tempfile::tempdir().unwrap();
@@ -306,7 +306,7 @@ fn sound_frames(count: u64) -> Vec<LinkFrame> {
         .collect()
 }
 
-/// As after `kill -9`: nothing closes the log, and all but the last half second is there.
+/// A log that is never closed, as after `kill -9`, contains all but the last half second.
 #[test]
 fn a_log_grows_and_needs_no_end() {
     let folder = tempfile::tempdir().unwrap();

@@ -38,7 +38,7 @@ pub enum InvalidSamples {
         /// Number of knots.
         knots: usize,
     },
-    /// As many u as Φ are needed.
+    /// u and Φ differ in length.
     Lengths {
         /// Number of u.
         u: usize,

@@ -86,7 +86,7 @@ impl<T: Scalar> Series<T> {
         self.0[M - 1].abs().max(self.0[M - 2].abs())
     }
 
-    /// Whether it has the same sign all over [−1, 1] for certain.
+    /// `true` if it provably has the same sign on all of [−1, 1].
     pub(super) fn keeps_its_sign(&self) -> bool {
         let [mean, rest @ ..] = &self.0;
         let rest = rest.iter().fold(T::zero(), |sum, c| sum + c.abs());

@@ -49,8 +49,8 @@ proptest! {
         }
     }
 
-    /// Appendix B: 2a ± b in closed form on the two diagonals, with the misprints of D₂ mended (8r³, and χ before its
-    /// last bracket). Common c_t only.
+    /// Appendix B: 2a ± b in closed form on the two diagonals, with the misprints of D₂ corrected (8r³, and χ before its last
+    /// bracket). Common c_t only.
     #[test]
     fn appendix_b(symmetric in symmetric_swimmer(), over_viscosity in 0.2..8.0, phi in -3.2..3.2) {
         let swimmer = Swimmer { tangential_drag: TangentialDrag::OverViscosity(over_viscosity), ..symmetric };

@@ -19,7 +19,7 @@ fn segments(links: &Links<f64>, phi: &Vector2<f64>) -> [[Vector2<f64>; 2]; 2] {
     [end(h, links.front, phi.x), end(-h, links.back, PI - phi.y)]
 }
 
-/// Whether the ends of each segment lie on different sides of the other.
+/// `true` if the ends of each segment lie on different sides of the other.
 fn intersect([a, b]: [Vector2<f64>; 2], [c, d]: [Vector2<f64>; 2]) -> bool {
     let side = |p: Vector2<f64>, q: Vector2<f64>, r: Vector2<f64>| (q - p).perp(&(r - p));
     side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0

@@ -10,7 +10,7 @@ use swimmer_model::{
     SymmetricFourier,
 };
 
-/// Φ and dΦ/du of the gait in hyper-dual numbers, beside its own rate.
+/// Compares dΦ/du of the gait in hyper-dual numbers with its own rate.
 fn rate_is_the_derivative(gait: &impl Gait<HyperDual>, u: f64) -> Result<(), TestCaseError> {
     let point = gait.at(HyperDual::new(u, 1.0, 0.0));
     for i in 0..2 {

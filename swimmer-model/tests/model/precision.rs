@@ -1,4 +1,4 @@
-//! What the chip computes in f32 is within 1e-4 of f64.
+//! Results in f32, as on the chip, are within 1e-4 of f64.
 
 use crate::random::{cases, harmonics, shape, swimmer};
 use nalgebra::Vector2;

@@ -12,7 +12,7 @@ pub(crate) fn cases(cases: u32) -> ProptestConfig {
         RngSeed::Random => RngSeed::Fixed(1977),
         chosen @ RngSeed::Fixed(_) => chosen,
     };
-    // Failures are printed with their inputs; nothing is written beside the sources.
+    // Failures are printed with their inputs; no file is written next to the sources.
     ProptestConfig {
         cases,
         rng_seed,

@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Matrix3x2, Vector2, Vector3};
 use std::f64::consts::PI;
 use swimmer_model::Swimmer;
 
-/// What the fluid does to the swimmer.
+/// Load of the fluid on the swimmer.
 pub(crate) struct Drag {
     /// Net force and torque about the middle link's centre.
     pub(crate) load: Vector3<f64>,
@@ -87,7 +87,7 @@ pub(crate) fn drag(
     sum
 }
 
-/// G(Φ, θ) by asking for the velocity that makes the load vanish, one joint at a time.
+/// G(Φ, θ) from the velocity at which the load vanishes, one joint at a time.
 pub(crate) fn connection(swimmer: &Swimmer<f64>, phi: &Vector2<f64>, theta: f64) -> Matrix3x2<f64> {
     let load = |v: Vector3<f64>, rate: Vector2<f64>| drag(swimmer, phi, theta, &v, &rate).load;
     let body =

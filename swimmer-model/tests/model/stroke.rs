@@ -1,4 +1,4 @@
-//! One cycle against a second integrator on the second formulation, and against the laws of strokes.
+//! One cycle compared with a second integrator on the second formulation, and the symmetries of strokes.
 
 use crate::near;
 use crate::random::{cases, harmonics, shape, swimmer, symmetric_swimmer};
@@ -140,7 +140,7 @@ proptest! {
             let moved = Vector3::new(stroke.displacement.x / length, stroke.displacement.y / length, stroke.rotation);
             moved / (PI * radius * radius)
         };
-        // The error is of first order in the radius, because the loop begins beside its centre.
+        // The error is of first order in the radius, because the loop begins next to its centre.
         let limit = over_area(1e-3) * 2.0 - over_area(2e-3);
         let curvature = model.first_derivatives(&center).curvature();
         let expected = Vector3::new(curvature.x / length, curvature.y / length, curvature.z);
@@ -236,7 +236,7 @@ fn the_dense_output_is_the_path() {
     let mut last = None;
     trajectory(&model, &gait, &tolerance, 40, |point| {
         count += 1;
-        // What is left of the cycle, swum from this point on, leads to the same end.
+        // The remainder of the cycle, integrated from this point on, leads to the same end.
         let rest = Shifted { gait, by: point.u };
         let mut pose = point.pose;
         for panel in Panels::new(&model, &rest, &tolerance) {

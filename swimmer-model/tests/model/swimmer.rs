@@ -1,4 +1,4 @@
-//! What is and what is no swimmer, and poses.
+//! Valid and invalid swimmers, and poses.
 
 use crate::near;
 use crate::random::{cases, swimmer};

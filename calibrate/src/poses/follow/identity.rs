@@ -1,9 +1,9 @@
-//! Which end is the front, from segment to segment and in all of a run.
+//! Assignment of front and back, from segment to segment and in a whole run.
 //!
-//! Geometry comes first: over a gap in which the robot cannot have turned far, the heading goes on, whatever names the points
-//! have behind it. Segments that it joins are one group. Names come second, and only where they agree: what is exchanged in
-//! between and comes back is a swap, but names that change sides for good, or for more than a quarter of a group, may as well be
-//! wrong in most of its rows. Then nothing is said here, and the direction of travel decides.
+//! Geometry comes first: over a gap in which the robot cannot have turned far, the heading continues, whatever names the points
+//! have after it. Segments that it joins are one group. Names come second, and only if they agree: an exchange that is reversed
+//! later is a swap, but names that change sides for good, or for more than a quarter of a group, may be wrong in most of its rows.
+//! Then the direction of travel decides.
 
 use std::f64::consts::FRAC_PI_3;
 
@@ -14,11 +14,11 @@ use super::search::Search;
 
 /// Contradicting names are swaps up to this share of a group's rows, if the names at its ends are alike,
 const SWAPS: f64 = 0.25;
-/// and else up to this: the share of the rows at either end by which these are told.
+/// otherwise up to this share, which is also the share of rows that counts as an end.
 const END: f64 = 0.02;
 /// Rows at the ends of a gap whose heading is taken.
 const ENDS: usize = 5;
-/// Over how long the robot's turning is watched \[s\].
+/// Interval over which the robot's rotation is observed \[s\].
 const WATCHED_S: f64 = 0.5;
 
 /// Rows whose front and back are settled.

@@ -202,7 +202,7 @@ impl Search<'_> {
         best.map(|(_, front, back)| (front, back))
     }
 
-    /// Where nothing is known of the past: labels first, then the better distance.
+    /// First pair, without a past: by labels, then by distance.
     pub(super) fn begin(&self, candidates: &[Candidate]) -> Option<(Candidate, Candidate)> {
         self.best(candidates, self.tolerance, |front, back| {
             let misfit = ((front.1 - back.1).norm() - self.distance).abs() / self.tolerance;

@@ -36,8 +36,8 @@ impl Nearby {
         })
     }
 
-    /// Which places of a row are kept: those near named ones, and, as long as one of these is missing, near what was kept before.
-    /// Without any, all: the reflectors may be anywhere.
+    /// Selects the places of a row to keep: those near named ones, and, as long as one of these is missing, those near places
+    /// kept before. Without any, all: the reflectors may be anywhere.
     pub(super) fn keep(&mut self, places: &[Option<[f64; 3]>]) -> &[bool] {
         let named = || {
             let both = self.named.iter().zip(places);

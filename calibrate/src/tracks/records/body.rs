@@ -103,7 +103,7 @@ pub(super) fn owners(poses: &[FramePose], bodies: &[RigidBody], seen: &Seen) -> 
 }
 
 impl FramePose {
-    /// Where the pose puts a point of the body.
+    /// Position of a point of the body in this pose.
     fn carries(&self, point: &Vector3<f64>) -> Vector3<f64> {
         let place = Vector3::from(self.place);
         let turn = self

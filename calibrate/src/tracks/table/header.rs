@@ -317,7 +317,7 @@ const TIMES: [&str; 11] = [
 /// Stamps since 1970 by their size: nanoseconds, microseconds, milliseconds.
 const SINCE_1970: [(f64, f64); 3] = [(1e17, 1e-9), (1e14, 1e-6), (1e11, 1e-3)];
 
-/// Where the rows' times come from; `row` are the cells of the first row.
+/// Source of the rows' times; `row` has the cells of the first row.
 fn clock(
     names: &[Name<'_>],
     row: Option<&[Cell<'_>]>,

@@ -1,4 +1,4 @@
-//! A campaign of the independent laboratory, calibrated and judged, with the truth beside it.
+//! A campaign of the independent laboratory, calibrated and judged, with the truth.
 
 use calibrate::assessment::{Assessment, Systematics};
 use calibrate::{
@@ -11,7 +11,7 @@ use crate::lab::{Faults, Lab, Run};
 /// Of all intervals here.
 pub(crate) const LEVEL: f64 = 0.9;
 
-/// What came of one campaign.
+/// Result of one campaign.
 #[derive(Debug)]
 pub(crate) struct Judged {
     pub(crate) truth: [f64; 2],
@@ -20,7 +20,7 @@ pub(crate) struct Judged {
     pub(crate) likelihood: [f64; 2],
 }
 
-/// Whether both truths lie within.
+/// For r_s and χ, `true` if the truth lies within.
 pub(crate) fn holds(intervals: &Intervals, truth: [f64; 2]) -> [bool; 2] {
     [intervals.sphere_radius, intervals.chi]
         .into_iter()

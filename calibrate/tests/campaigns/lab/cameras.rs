@@ -1,4 +1,4 @@
-//! What the cameras make of the swimmer: noise, scale, tilt, bumps, drift, exchanged labels, ghosts, gaps.
+//! Cameras of the laboratory: noise, scale, tilt, bumps, drift, exchanged labels, ghosts, gaps.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -35,7 +35,7 @@ impl Cameras {
         dropout: 0.0,
         ghosts: 0.0,
     };
-    /// As many rows as a cycle of ten seconds needs, for soaks of hundreds of campaigns.
+    /// The number of rows that a cycle of ten seconds needs, for soaks of hundreds of campaigns.
     pub(crate) const SPARSE: Self = Self {
         rate_hz: 20.0,
         ..Self::FULL
@@ -52,7 +52,7 @@ pub(crate) struct Bump {
     pub(crate) turn: f64,
 }
 
-/// What goes wrong in one run.
+/// Faults of one run.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Faults {
     /// Velocity of the fluid \[m/s\].
@@ -68,7 +68,7 @@ pub(crate) struct Faults {
     pub(crate) reflections: Vec<[f64; 2]>,
 }
 
-/// Where the reflectors really are.
+/// True positions of the reflectors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Places {
     /// On the middle link from its centre: along it, to its left \[m\].
@@ -140,7 +140,7 @@ pub(crate) fn see(
     frames
 }
 
-/// Where the reflectors are in the tank.
+/// Positions of the reflectors in the tank.
 fn points(state: &State, body: &Body, places: &Places) -> Vec<[f64; 2]> {
     let [x, y, theta, phi1, phi2] = *state;
     let from = |origin: [f64; 2], direction: f64, place: [f64; 2]| {

@@ -66,7 +66,7 @@ pub(crate) fn table(frames: &[Frame], rate_hz: f64, marked: usize) -> String {
     out
 }
 
-/// As Motive 2 writes it: metres, Y up, so that (x, y) = (Z, X).
+/// Format of Motive 2: metres, Y up, so that (x, y) = (Z, X).
 pub(crate) fn motive(frames: &[Frame], rate_hz: f64, marked: usize) -> String {
     let count = frames.first().map_or(0, Vec::len);
     let total = frames.len();

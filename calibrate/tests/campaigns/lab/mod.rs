@@ -1,7 +1,8 @@
-//! A laboratory that shares nothing with the house: its own swimmer ([`body`]), joints and integration ([`swim`]), cameras
-//! ([`cameras`]) and files ([`files`]), so that no model is its own witness. `lab_check.rs` holds it to printed numbers.
+//! An independent laboratory that shares no code with the project: its own swimmer ([`body`]), joints and integration ([`swim`]),
+//! cameras ([`cameras`]) and files ([`files`]), so that no model confirms itself. `lab_check.rs` compares it with printed
+//! numbers.
 //!
-//! A [`Lab`] is what is true; [`Lab::campaign`] is what its people write down and record. Everything is seeded.
+//! A [`Lab`] is the truth; [`Lab::campaign`] is what its people write down and record. Everything is seeded.
 // Each test takes of it what it needs.
 
 pub(crate) mod body;
@@ -24,11 +25,11 @@ pub(crate) use swim::{Joint, Loop, Play, State};
 pub(crate) struct Run {
     /// Amplitude of the circle \[deg\].
     pub(crate) degrees: f64,
-    /// Whether it ran clockwise, which nobody wrote down.
+    /// `true` if it ran clockwise, which is not written down.
     pub(crate) clockwise: bool,
-    /// What the tank's walls leave of every translation.
+    /// Factor of the tank's walls on every translation.
     pub(crate) wall: f64,
-    /// Where it starts: x, y \[m\] and heading \[rad\].
+    /// Start pose: x, y \[m\] and heading \[rad\].
     pub(crate) start: [f64; 3],
     pub(crate) faults: Faults,
 }
@@ -45,7 +46,7 @@ impl Run {
     }
 }
 
-/// What is true in a laboratory.
+/// True state of a laboratory.
 #[derive(Debug, Clone)]
 pub(crate) struct Lab {
     pub(crate) body: Body,
@@ -53,22 +54,22 @@ pub(crate) struct Lab {
     pub(crate) stated: [f64; 3],
     pub(crate) joints: [Joint; 2],
     pub(crate) cameras: Cameras,
-    /// Where the reflectors really are. The campaign always says that they sit at the ends of the middle link, and those of
-    /// the side links as [`SIDE_PLACE`] says.
+    /// True positions of the reflectors. The campaign always states that they sit at the ends of the middle link, and those of
+    /// the side links at [`SIDE_PLACE`].
     pub(crate) places: Places,
     pub(crate) period_s: f64,
     pub(crate) cycles: u32,
     pub(crate) runs: Vec<Run>,
     /// The servos that the swimmer file names; `None` for ideal ones.
     pub(crate) known_servo: Option<ServoFile>,
-    /// Whether the campaign names points (`Front`, `Back`) or leaves them to be found.
+    /// `true` if the campaign names points (`Front`, `Back`), `false` if it leaves them to be found.
     pub(crate) named: bool,
-    /// Whether a flash tells when cycles begin.
+    /// `true` if a flash marks the starts of cycles.
     pub(crate) flash: bool,
     pub(crate) seed: u64,
 }
 
-/// Where the campaign says that side links' reflectors sit: outwards from the joint, to the left \[m\].
+/// Stated position of side links' reflectors: outwards from the joint, to the left \[m\].
 pub(crate) const SIDE_PLACE: [f64; 2] = [0.1, 0.0];
 
 impl Lab {
@@ -149,7 +150,7 @@ impl Lab {
         }
     }
 
-    /// How a run really went.
+    /// True course of a run.
     pub(crate) fn states(&self, index: usize) -> Vec<State> {
         let run = &self.runs[index];
         swim::swim(

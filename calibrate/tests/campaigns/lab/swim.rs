@@ -1,8 +1,8 @@
-//! What the joints do, and where the swimmer goes by it: a classical Runge–Kutta step from one set of joint angles to the next.
+//! Joints and motion of the laboratory's swimmer: a classical Runge–Kutta step from one set of joint angles to the next.
 
 use super::body::{Body, Connection};
 
-/// What a joint makes of its command: φ follows gain · command(t − lag) + offset, with a play of the dead band either way.
+/// Model of a joint: φ follows gain · command(t − lag) + offset, with a play of the dead band in both directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Joint {
     pub(crate) gain: f64,
@@ -25,7 +25,7 @@ impl Joint {
         max_rate: 3.5,
     };
 
-    /// Where the shaft is after a step in which it is wanted at `wanted`.
+    /// Position of the shaft after a step with the command `wanted`.
     fn follow(&self, shaft: f64, wanted: f64, dt: f64) -> f64 {
         let excess = (wanted - shaft).abs() - self.dead_band;
         let way = excess.max(0.0).min(self.max_rate * dt);

@@ -1,4 +1,4 @@
-//! What can happen to a text file on its way from the laboratory: forty-odd kinds of damage, each at a seeded place.
+//! Damage of text files on their way from the laboratory: more than forty kinds, each at a seeded place.
 
 // Each damage takes a text and a generator and gives bytes, whether it needs all of them or not.
 #![allow(clippy::needless_pass_by_value)]

@@ -1,5 +1,5 @@
-//! Who knows everything but the answer: the model's derivatives by differences of the laboratory's own campaigns, each value's error
-//! by repeating them, and what is known beforehand. Its intervals are what nobody can better.
+//! Oracle for the best possible intervals: the model's derivatives by differences of the laboratory's own campaigns, the error of
+//! each value by repeating them, and the priors. No estimator can have narrower intervals.
 
 use calibrate::calibrate_run;
 use nalgebra::{DMatrix, DVector};
@@ -30,7 +30,7 @@ fn values(lab: &Lab) -> DVector<f64> {
     DVector::from_vec(of_runs.collect())
 }
 
-/// What may differ: by how much it is tried, how well it is known (`None`: not at all), and how.
+/// Error that may be present: the step of its difference, its standard deviation (`None`: unknown), and its effect.
 type Column = (f64, Option<f64>, fn(&mut Lab, f64));
 
 const COLUMNS: [Column; 8] = [

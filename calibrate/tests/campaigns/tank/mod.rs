@@ -40,7 +40,7 @@ pub(crate) struct Tank {
     pub(crate) dropout: f64,
     /// Stretches (first frame, frames) in which both are missing.
     pub(crate) gaps: Vec<(usize, usize)>,
-    /// How far reflectors are seen off their places in the three frames beside such a stretch, m.
+    /// Displacement of reflectors from their places in the three frames next to such a stretch, m.
     pub(crate) tails: f64,
     /// Stretches in which the labels are exchanged.
     pub(crate) swaps: Vec<(usize, usize)>,
@@ -166,7 +166,7 @@ impl Tank {
         self.swimmer.links.middle / 2.0
     }
 
-    /// What the cameras see: front, back and two ghosts, (x, y, height).
+    /// Camera frames: front, back and two ghosts, (x, y, height).
     fn frames(&self) -> Vec<[Option<[f64; 3]>; 4]> {
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
         let mut ghosts = [None; 2];
@@ -215,7 +215,7 @@ impl Tank {
         self.poses().into_iter().enumerate().map(see).collect()
     }
 
-    /// As Motive writes it: Y up, (x, y) = (Z, X), six digits.
+    /// Format of Motive: Y up, (x, y) = (Z, X), six digits.
     pub(crate) fn motive(&self) -> String {
         let names = ["Front", "Back", "Unlabeled 1201", "Unlabeled 1202"];
         let frames = self.frames();

@@ -20,12 +20,12 @@ use swimmer_files::{
 use swimmer_model::{Gait as _, Swimmer};
 use twin::{CameraConfig, Twin, TwinConfig, TwinPort, WireSpeed};
 
-/// What is true in one laboratory.
+/// True state of one laboratory.
 #[derive(Debug, Clone)]
 pub(crate) struct Laboratory {
     pub(crate) swimmer: Swimmer<f64>,
     pub(crate) servo: ServoFile,
-    /// Where the joints' zeros really are \[rad\].
+    /// True zeros of the joints \[rad\].
     pub(crate) offsets: [f64; 2],
     /// Amplitudes \[deg\].
     pub(crate) amplitudes: Vec<f64>,
@@ -211,7 +211,7 @@ impl Laboratory {
         std::fs::read_to_string(path).unwrap()
     }
 
-    /// What the cameras' makers do not promise to be absent: exchanged labels, another clock, and a drifting fluid.
+    /// Faults that the cameras' makers do not exclude: exchanged labels, another clock, and a drifting fluid.
     fn spoil(&self, text: &str, index: usize) -> String {
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed * 100 + index as u64);
         rng.set_stream(7);
