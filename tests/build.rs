@@ -1,4 +1,4 @@
-//! Tells the tests whether the real recordings lie beside the clone: `cfg(shared)`. Those that need them are ignored elsewhere.
+//! Sets `cfg(shared)` if the real recordings lie next to the clone. Without them, the tests that need them are ignored.
 
 use std::path::Path;
 

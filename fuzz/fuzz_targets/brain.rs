@@ -19,7 +19,7 @@ enum Step {
         nonce: u8,
     },
     Ask(Ask),
-    /// Without the signature that a robot with a key asks for.
+    /// Without the signature that a robot with a key requires.
     Unsigned(Ask),
     /// One of the last signed frames, byte by byte.
     Recorded {
@@ -75,7 +75,7 @@ struct Host {
     asked_key: Option<(u16, Option<Key>)>,
     /// The robot has some key for certain: it said so, and no request could have taken it away since.
     locked: bool,
-    /// What the open session is bound to, and its seal where it began with a key.
+    /// Binding of the open session, and its seal if it began with a key.
     bound: Option<(Binding, Option<Seal>)>,
     /// The open session began when the robot was locked: only what is signed moves it.
     guarded: bool,
@@ -101,7 +101,7 @@ impl Host {
                     if let Some((sequence, key)) = self.asked_key
                         && sequence == received.header.sequence
                     {
-                        // The session is closed: no telemetry tells it.
+                        // The session is closed: no telemetry is sent in it.
                         self.key = key;
                         self.locked = key.is_some();
                     }
@@ -147,7 +147,7 @@ impl Host {
     }
 }
 
-/// How far a polite host has come before the story begins: a fuzzer does not find a whole upload by chance.
+/// Progress of a polite host before the story begins: a fuzzer does not find a whole upload by chance.
 #[derive(Arbitrary, Debug, PartialEq, PartialOrd)]
 enum Start {
     Greeted,
@@ -203,7 +203,7 @@ fn prelude(robot: &mut FuzzedRobot, host: &mut Host, start: &Start) {
             },
         ),
     ];
-    // Whether there is a key, each story chooses: those that go further than the lock go without.
+    // Each story chooses if the robot has a key: those that go further than the lock have none.
     let told = |from: &Start| match from {
         Start::Locked => *start == Start::Locked,
         from => start >= from && *start != Start::Locked,
@@ -241,7 +241,7 @@ fn tell(robot: &mut FuzzedRobot, host: &mut Host, step: &Step) {
             if let Request::SetKey(key) = request {
                 host.asked_key = Some((host.sequence, key));
             }
-            // What powers the servos takes a host that has just heard the robot.
+            // Requests that power the servos need a host that has just received a frame.
             let heartbeat = wire::heartbeat(robot.now_us());
             for (sequence, message) in [(0, heartbeat), (host.sequence, Message::Request(request))]
             {
@@ -342,7 +342,7 @@ fn tell(robot: &mut FuzzedRobot, host: &mut Host, step: &Step) {
     }
 }
 
-/// The request of an ask, with what the witness has to know of it, unless it is sure to be turned away.
+/// The request of an ask. Records its consequences for the checker, unless it is sure to be refused.
 fn noted(robot: &mut FuzzedRobot, host: &mut Host, ask: &Ask, turned_away: bool) -> Request {
     let checked = match ask {
         Ask::Follow { .. } => Checked {

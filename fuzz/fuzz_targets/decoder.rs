@@ -30,7 +30,7 @@ fuzz_target!(|bytes: &[u8]| {
     let counted = (counters.ok + counters.bad()) as usize;
     assert_eq!(counted, ended + usize::from(open_overflow));
 
-    // What was understood can be said again, and is understood the same.
+    // A decoded message can be encoded again, and is decoded the same.
     for message in received
         .into_iter()
         .filter_map(|received| received.message.ok())
@@ -47,7 +47,7 @@ fn again(message: &Message) {
         .filter_map(|&byte| decoder.push(byte))
         .collect();
     assert_eq!(said.len(), 1);
-    // Numbers that are none differ from themselves.
+    // NaN differs from itself.
     let same = format!("{:?}", said[0].message.as_ref().ok()) == format!("{:?}", Some(message));
     assert!(same, "{message:?} is said as {:?}", said[0].message);
 }

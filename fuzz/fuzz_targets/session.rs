@@ -1,5 +1,5 @@
-//! The host's session against the real brain over any weather: every ticket ends once, and an upload that is told to
-//! be there is there.
+//! The host's session with the real brain over a faulty link: every ticket ends once, and the robot holds every upload that is
+//! reported as complete.
 #![no_main]
 
 use std::collections::BTreeMap;
@@ -41,7 +41,7 @@ struct Scene {
     now: Duration,
     there: Vec<u8>,
     back: Vec<u8>,
-    /// What each ticket asked for, until its event comes; an upload's checksum.
+    /// Open tickets with the checksum of an upload, until their events come.
     open: BTreeMap<Ticket, Option<u32>>,
 }
 

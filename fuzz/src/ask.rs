@@ -22,7 +22,7 @@ fn circle(amplitude: f64, knots: usize) -> GaitTable {
     .expect("a circle within the table's range")
 }
 
-/// Bytes of a table in one request: there is room for a signature beside them.
+/// Bytes of a table in one request, so that a signature fits as well.
 pub const PIECE: usize = MAX_SIGNED_CHUNK;
 
 /// The table of this number.

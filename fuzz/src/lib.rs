@@ -1,7 +1,7 @@
-//! What the fuzz targets share: operators and links without manners, and the witness that watches the pulses.
+//! Common parts of the fuzz targets: arbitrary operators and links, and a checker of the pulses.
 //!
-//! Bytes from the fuzzer become a story (requests, raw bytes, times, resets) that is told to the real brain and the real
-//! session; each target says what must hold however the story goes.
+//! Bytes from the fuzzer become a story (requests, raw bytes, times, resets) for the real brain and the real session; each target
+//! checks invariants that hold for every story.
 
 pub mod ask;
 pub mod robot;

@@ -16,7 +16,7 @@ pub struct FuzzedRobot {
     last: Option<Output>,
     /// An arm has reached the robot since it last stood in a latched stop.
     pub armed: bool,
-    /// A servo's map or limits were asked for: the witness no longer knows the largest step.
+    /// A servo's map or limits were changed: the largest step is no longer known.
     pub remapped: bool,
 }
 

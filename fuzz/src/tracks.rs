@@ -1,14 +1,14 @@
-//! Tracking files, whatever is in them: tracks or an error that says what is wrong, never a panic, never a number that is none.
+//! Tracking files with arbitrary contents: tracks or an error with a reason, never a panic, never NaN.
 
 use std::path::Path;
 
 use calibrate::{TrackFile, TrackOptions, TrackSurvey};
 
-/// Reads a file that begins with one of `openings`: bytes that do not get the first of them put in front. Which reader a
-/// file goes to is told by its first lines, so these force the format; without openings the bytes are the whole file.
+/// Reads a file that begins with one of `openings`; other bytes get the first of them as a prefix. The first lines select the
+/// reader, so these force the format; without openings the bytes are the whole file.
 ///
 /// # Panics
-/// Where what was read is not sane.
+/// If the result is inconsistent.
 pub fn read(bytes: &[u8], openings: &[&str]) {
     let begun = |opening: &&str| bytes.starts_with(opening.as_bytes());
     let opening = match openings.first() {

@@ -39,7 +39,7 @@ pub fn hello(host_nonce: u32) -> Message {
     })
 }
 
-/// A keep-alive of a host that heard the robot then.
+/// Heartbeat of a host with this time of the last received frame.
 pub fn heartbeat(heard_us: u64) -> Message {
     Message::Heartbeat(Heartbeat {
         host_us: 0,
@@ -47,7 +47,7 @@ pub fn heartbeat(heard_us: u64) -> Message {
     })
 }
 
-/// What happens to the bytes in flight.
+/// Faults of the link.
 #[derive(Arbitrary, Debug, Clone, Copy)]
 pub enum Weather {
     Fair,
@@ -59,7 +59,7 @@ pub enum Weather {
 }
 
 impl Weather {
-    /// What arrives of `bytes`; what is held stays there.
+    /// The part of `bytes` that arrives; held bytes stay in it.
     pub fn pass(self, bytes: &mut Vec<u8>) -> Vec<u8> {
         if let Self::Held = self {
             return Vec::new();

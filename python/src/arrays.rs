@@ -6,9 +6,9 @@ use pyo3::prelude::*;
 
 use crate::errors::BadInput;
 
-/// What Python hands over as an array of numbers.
+/// Numeric array from Python.
 pub(crate) type Numbers<'py> = PyArrayLikeDyn<'py, f64, AllowTypeChange>;
-/// What Python gets back.
+/// Array for Python.
 pub(crate) type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
 
 /// Numbers for each of many shapes.

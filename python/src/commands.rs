@@ -13,7 +13,7 @@ use crate::errors::{BadInput, Failed};
 
 /// Main threads have as much; others as little as a quarter of it.
 const STACK_BYTES: usize = 8 << 20;
-/// How long Ctrl-C may wait to be seen.
+/// Longest delay until Ctrl-C is noticed.
 const LOOK_FOR_SIGNALS_EVERY: Duration = Duration::from_millis(50);
 
 /// The JSON document of a command, and the warnings that it gave.

@@ -106,7 +106,8 @@ impl Gait {
         Self::of_file(read)
     }
 
-    /// Radius `amplitude` in the (φ₁, φ₂) plane [rad], at uniform angle, counter-clockwise from φ₁ = φ₂ > 0 unless told otherwise.
+    /// Radius `amplitude` in the (φ₁, φ₂) plane [rad], at uniform angle, counter-clockwise from φ₁ = φ₂ > 0 unless `clockwise` is
+    /// set.
     #[staticmethod]
     #[pyo3(signature = (amplitude, *, clockwise=false))]
     fn circle(amplitude: f64, clockwise: bool) -> PyResult<Self> {
@@ -171,7 +172,7 @@ impl Gait {
         rows(py, &phi, &[u.shape(), &[2]].concat())
     }
 
-    /// What it was optimised for: `displacement`, `efficiency`, `turning`, `sideways`, `speed`, or `unspecified`.
+    /// Objective of the optimisation: `displacement`, `efficiency`, `turning`, `sideways`, `speed`, or `unspecified`.
     #[getter]
     fn objective(&self) -> &'static str {
         self.file.objective.word()

@@ -177,7 +177,7 @@ impl Swimmer {
         })
     }
 
-    /// What people call it.
+    /// Name of the swimmer for people.
     #[getter]
     fn name(&self) -> &str {
         &self.file.name

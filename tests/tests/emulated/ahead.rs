@@ -1,4 +1,4 @@
-//! The emulated robot lives ahead of the line while nothing can arrive, so as not to be asked every millisecond. Nobody may see
+//! The emulated robot runs ahead of the line while no byte can arrive, which saves a call every millisecond. No observer may see
 //! a difference.
 
 use std::ops::ControlFlow;
@@ -13,7 +13,7 @@ use twin::VirtualRobot as _;
 
 use crate::rig::{self, Image};
 
-/// The same robot, asked every millisecond.
+/// The same robot, advanced every millisecond.
 struct StepByStep(EmulatedRobot);
 
 impl Device for StepByStep {
@@ -30,7 +30,7 @@ impl Device for StepByStep {
     }
 }
 
-/// What a session sees, and when it ends.
+/// Telemetry of a session with its times, and the end of the session.
 type Seen = (Vec<(Telemetry, Duration)>, Duration);
 
 fn session<P: Port>(port: P) -> (Seen, P) {

@@ -113,7 +113,7 @@ fn a_pack_that_dips_on_every_stroke_stops_the_robot() {
 fn a_sag_of_three_milliseconds_is_measured() {
     let mut robot = rig::robot_of(Image::NanoDivider);
     robot.arm(false).unwrap();
-    // Telemetry tells of every second tick: of two sags 20 ms apart it tells one.
+    // Telemetry covers every second tick: of two sags 20 ms apart it shows one.
     let (lows, lowest) = std::sync::mpsc::channel();
     robot.observe(Box::new(move |telemetry, _| {
         let _ = lows.send(telemetry.battery_mv.unwrap_or(u16::MAX));

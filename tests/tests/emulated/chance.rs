@@ -1,4 +1,4 @@
-//! What no two starts have in common: the numbers that keep a recording of one from acting in another.
+//! Random numbers that differ between starts, so that a recording of one session does not act in another.
 
 use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex};
@@ -93,7 +93,7 @@ fn a_signed_recording_played_back_after_a_power_cycle_acts_nothing() {
     );
 }
 
-/// What the greeting after a start told, for the reason it had to have.
+/// Boot nonce and session number of the greeting after a start, whose reason is checked.
 fn started(robot: &mut Robot<Port>, reason: ResetReason) -> (u32, u16) {
     rig::pass(robot, MS * 300);
     robot.reconnect().unwrap();

@@ -1,4 +1,4 @@
-//! What a crash leaves: the pulses end at once, and the next greeting tells the place and the words.
+//! Crash report: the pulses end at once, and the next greeting has place and message.
 
 use std::time::Duration;
 
@@ -27,7 +27,7 @@ fn board(robot: &mut Robot<Port>) -> &mut Board {
     robot.port_mut().device_mut().board_mut()
 }
 
-/// Lets the crash happen; the pulses end within a tick and a period. Returns after how many ms, and what the robot tells.
+/// Waits for the crash; the pulses end within a tick and a period. Returns the delay in ms, and the robot's report.
 fn told_after(robot: &mut Robot<Port>) -> (u128, String) {
     rig::events(robot);
     let before = board(robot).now();
@@ -219,7 +219,7 @@ fn code(board: &mut Board) -> Vec<u16> {
         .collect()
 }
 
-/// Where Thumb's `bl` at this address leads.
+/// Target of Thumb's `bl` at this address.
 fn branch_target(at: u32, first: u16, second: u16) -> Option<u32> {
     if first & 0xf800 != 0xf000 || second & 0xd000 != 0xd000 {
         return None;

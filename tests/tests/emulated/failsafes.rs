@@ -1,4 +1,4 @@
-//! What ends motion, measured at the pins: a silent link in every state, Stop, e-stop.
+//! End of motion, measured at the pins: a silent link in every state, Stop, e-stop.
 
 use std::ops::ControlFlow;
 use std::time::Duration;
@@ -16,11 +16,11 @@ const PERIOD: Duration = Duration::from_secs(10);
 /// A tick comes this long before the period that shows it at the pins.
 const LATCH: Duration = Duration::from_millis(12);
 const TICK: Duration = Duration::from_millis(20);
-/// A frame is read this long after its last byte at most: the UART tells of the last bytes of a burst after 32 bits of silence
-/// (RP2040 datasheet, 4.2.6.5: receive timeout; 278 us at 115 200 baud), and then it is decoded.
+/// Longest time from a frame's last byte to its decoding: the UART reports the last bytes of a burst after 32 bits of silence
+/// (RP2040 datasheet, 4.2.6.5: receive timeout; 278 us at 115 200 baud).
 const READ: Duration = Duration::from_micros(400);
 
-/// Where a robot can be when its link falls silent.
+/// State of a robot when its link falls silent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Case {
     Stopped,
@@ -96,7 +96,7 @@ fn half_an_upload(robot: &mut Robot<Port>) {
     assert!(broken_off.is_err());
 }
 
-/// Time of the last period with pulses; none where there were none.
+/// Time of the last period with pulses. Returns `None` without pulses.
 fn last_pulse(periods: &[Period]) -> Option<Duration> {
     let powered = periods.iter().rev().find(|period| period.powered());
     powered.map(Period::at)
@@ -241,7 +241,7 @@ fn stop_and_estop_act_within_a_tick() {
     );
 }
 
-/// How much later than `arrived` the last pulse began; zero where none began any more.
+/// Time from `arrived` to the start of the last pulse; zero if no pulse began after it.
 fn last_pulse_after(periods: &[Period], arrived: Duration) -> Duration {
     assert!(!periods.last().unwrap().powered());
     last_pulse(periods).map_or(Duration::ZERO, |last| last.saturating_sub(arrived))

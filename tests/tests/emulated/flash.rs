@@ -12,7 +12,7 @@ use rand_chacha::ChaCha8Rng;
 use crate::promise::seen;
 use crate::rig::{self, Port};
 
-/// What a store of one table costs: a sector erased and its pages programmed.
+/// Bytes written by a store of one table: a sector erased and its pages programmed.
 const STORE_BYTES: u32 = 4096 + 2304;
 const MS: Duration = Duration::from_millis(1);
 
@@ -26,7 +26,7 @@ fn robot_with(table: &GaitTable) -> Robot<Port> {
     robot
 }
 
-/// What a robot holds that comes up with this flash.
+/// CRC of the table that a robot holds after it starts with this flash.
 fn held(robot: &mut Robot<Port>) -> Option<u32> {
     rig::pass(robot, 100 * MS);
     robot.reconnect().unwrap();

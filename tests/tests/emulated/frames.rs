@@ -29,7 +29,7 @@ pub(crate) struct Frames {
     table: GaitTable,
     upload: u16,
     offset: usize,
-    /// The robot's clock as it was heard last, µs.
+    /// Last received time of the robot's clock, µs.
     heard_us: u64,
     /// Table and settings of the robot, and its e-stops, as a status reported them last.
     held: Checked,
@@ -130,7 +130,7 @@ impl Frames {
         bytes
     }
 
-    /// What a host sends in a session; stops are rare, so that the robot is mostly in motion.
+    /// Next frame of a valid session; stops are rare, so that the robot is mostly in motion.
     fn honest(&mut self) -> Vec<u8> {
         let request = match self.rng.random_range(0..100) {
             0..20 => {

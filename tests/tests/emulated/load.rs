@@ -1,5 +1,5 @@
-//! R11 and R13: how long the chip is busy in a servo period, whatever else is asked of it meanwhile, with its flash behind
-//! the cache that the chip has; how deep its stack gets.
+//! R11 and R13: busy time of the chip in a servo period under every load, with its flash behind the cache of the chip, and the
+//! depth of its stack.
 
 use std::ops::ControlFlow;
 use std::time::Duration;
@@ -19,7 +19,7 @@ struct Busiest {
     awake: f64,
 }
 
-/// What the servos' periods took since this was last asked.
+/// Longest times in the servo periods since the last call, and the number of periods.
 fn busiest(robot: &mut Robot<Port>) -> (Busiest, usize) {
     let periods = rig::events(robot).periods;
     let longest = |time: fn(&Period) -> f64| periods.iter().map(time).fold(0.0, f64::max);

@@ -14,9 +14,9 @@ use crate::rig::{self, Image};
 
 /// Frames that go to the board at once; they take about a tenth of a second on the line.
 const BATCH: usize = 64;
-/// So often the robot is greeted anew, for noise may have opened a session or used up numbers.
+/// Batches between greetings, since noise may have opened a session or used up numbers.
 const GREETED_EVERY: usize = 4;
-/// So often it is told to stop.
+/// Batches between stops.
 const STOPPED_EVERY: usize = 128;
 const MS: Duration = Duration::from_millis(1);
 /// Sequence number of the stops, by which their answers are known.
@@ -43,7 +43,7 @@ fn another_half_million_frames_of_noise_do_no_harm() {
     noise(500_000, 12, seen_in_soak);
 }
 
-/// What came of it.
+/// Counts of the test.
 #[derive(Default)]
 struct Tally {
     bytes: usize,
@@ -52,7 +52,7 @@ struct Tally {
     shortest_us: f64,
     longest_us: f64,
     stops: usize,
-    /// Stops that were sent again, because the first fell into the time in which flash is erased and nothing is heard.
+    /// Stops that were sent again, because the first came while flash was erased and no byte was received.
     again: usize,
 }
 
@@ -62,9 +62,9 @@ struct Storm {
     frames: Frames,
     status: Option<Status>,
     stop_answered: bool,
-    /// Bytes that the board has not heard since it was switched on.
+    /// Bytes that the board has lost since it was switched on.
     lost: u64,
-    /// As the robot counts since it was switched on: requests that acted, frames that found no room on their way out.
+    /// The robot's counters since it was switched on: requests that acted, frames dropped for lack of buffer space.
     acted: u32,
     dropped: u32,
     /// Frames as the robot counts them, and as a decoder here does that takes the same bytes.
@@ -73,7 +73,7 @@ struct Storm {
     tally: Tally,
 }
 
-/// Sends so many frames; tells at each tenth what came of it so far, and at the end.
+/// Sends `count` frames; reports the counts at each tenth and at the end.
 fn noise(count: usize, seed: u64, tell: fn(&str, &str)) {
     let board = rig::board(Image::Nano);
     let mut storm = Storm {
@@ -99,7 +99,7 @@ fn noise(count: usize, seed: u64, tell: fn(&str, &str)) {
         if batch % GREETED_EVERY == 0 {
             let hello = storm.frames.hello();
             storm.send(&hello);
-            storm.live(10 * MS); // its answer tells the session
+            storm.live(10 * MS); // its answer has the session number
         }
         let bytes: Vec<u8> = (0..BATCH).flat_map(|_| storm.frames.next()).collect();
         storm.tally.bytes += bytes.len();
@@ -132,7 +132,7 @@ fn noise(count: usize, seed: u64, tell: fn(&str, &str)) {
 }
 
 impl Storm {
-    /// What came of it so far, in words.
+    /// The counts so far, in words.
     fn told(&self) -> String {
         let Tally {
             periods,

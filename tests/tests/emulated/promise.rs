@@ -21,7 +21,7 @@ pub(crate) fn seen_in_soak(promise: &str, told: &str) {
     }
 }
 
-/// Prints a row of the table. Fails where the README tells something else.
+/// Prints a row of the table. Fails if the README differs.
 pub(crate) fn seen(promise: &str, seen: &str) {
     let row = format!("| {promise} | {seen} |");
     println!("{row}");

@@ -1,4 +1,4 @@
-//! What the HC-05 and its wires can do to the UART: not connected, another baud rate, noise, bytes while nobody listens.
+//! Faults of the HC-05 and its wires at the UART: not connected, another baud rate, noise, bytes while the robot does not read.
 
 use std::ops::ControlFlow;
 use std::time::Duration;
@@ -38,14 +38,14 @@ fn hello() -> Vec<u8> {
     }))
 }
 
-/// While the HC-05 is not connected it takes bytes for AT commands: none must come. What is received still counts.
+/// An unconnected HC-05 takes bytes for AT commands: none must be sent. Received bytes still count.
 #[test]
 fn nothing_is_sent_while_the_radio_is_not_connected() {
     let mut robot = rig::robot();
     robot.arm(false).unwrap();
     let board = robot.port_mut().device_mut().board_mut();
     board.set_connected(false).unwrap();
-    // What was under way in the UART and on the line.
+    // Bytes in the UART and on the line.
     sent_within(&mut robot, Duration::from_millis(20));
     let stop = frame(&Message::Request(Request::Stop));
     for bytes in [hello(), stop] {

@@ -1,4 +1,4 @@
-//! What outlives a reset and what does not: R6, R7 and R8's second half.
+//! State that survives a reset and state that does not: R6, R7 and R8's second half.
 
 use std::time::Duration;
 
@@ -10,7 +10,7 @@ use crate::rig::{self, Port};
 
 const MS: Duration = Duration::from_millis(1);
 
-/// R7: whichever task hangs, the chip resets within half a second, into Stopped, without pulses, with the reason told.
+/// R7: whichever task hangs, the chip resets within half a second, into Stopped, without pulses, and reports the reason.
 #[test]
 fn a_hung_task_resets_the_board() {
     let tasks = rig::tasks(&mut rig::robot());
@@ -174,7 +174,7 @@ fn reset_by_a_fault_then_debugger(robot: &mut Robot<Port>) {
     }
 }
 
-/// A run that is none of the short ones, which are counted whatever ended them.
+/// A run longer than the short ones, which are counted whatever ended them.
 fn long_run(robot: &mut Robot<Port>) {
     rig::pass(robot, MS * 61_000);
     robot.reconnect().unwrap();

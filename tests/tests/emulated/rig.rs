@@ -27,8 +27,8 @@ pub(crate) enum Image {
     Pico,
 }
 
-/// What is needed; where something is missing, the test fails with the sentence that says how to make it. A test that does
-/// nothing instead would pass for having seen what nobody saw.
+/// Configuration of the board. If a file is missing, the test fails with the sentence that says how to make it. A test that does
+/// nothing instead would appear to pass.
 fn config(image: Image) -> BoardConfig {
     let (kind, divider) = match image {
         Image::Nano => (BoardKind::NanoConnect, None),
@@ -67,7 +67,7 @@ pub(crate) fn device(image: Image) -> EmulatedRobot {
     let file = SwimmerFile::preset("robot").unwrap();
     let world = World::new(&TwinConfig::new(&file, 1)).unwrap();
     let robot = EmulatedRobot::new(board(image), world).unwrap();
-    // What a failing test shows.
+    // Output of a failing test.
     robot.with_log_reader(|line| eprintln!("firmware: {line}"))
 }
 
@@ -121,7 +121,7 @@ pub(crate) fn live(robot: &mut Robot<Port>, time: Duration) {
     robot.listen(time, |_| ControlFlow::Continue(())).unwrap();
 }
 
-/// Lives until telemetry tells of a state.
+/// Runs until telemetry reports a state.
 pub(crate) fn live_until(robot: &mut Robot<Port>, state: StateName) {
     robot
         .listen(Duration::from_secs(20), |telemetry| match telemetry {
@@ -136,7 +136,7 @@ pub(crate) fn live_until(robot: &mut Robot<Port>, state: StateName) {
 /// Thumb's `b .`: a task whose first instruction this is hangs.
 const BRANCH_TO_ITSELF: u16 = 0xe7fe;
 
-/// Where the firmware's tasks begin.
+/// Addresses of the firmware's tasks.
 pub(crate) fn tasks(robot: &mut Robot<Port>) -> Vec<u32> {
     let symbols = board_of(robot).symbols("TaskStorage").unwrap();
     let polls = symbols
@@ -164,7 +164,7 @@ pub(crate) fn reset_by_hanging(robot: &mut Robot<Port>) {
     panic!("no task whose hanging resets the chip");
 }
 
-/// What a request was refused for.
+/// Reason for which a request was refused.
 pub(crate) fn refusal<T: std::fmt::Debug>(outcome: Result<T, LinkError>) -> Refusal {
     match outcome {
         Err(LinkError::Refused { refusal, .. }) => refusal,
@@ -210,7 +210,7 @@ pub(crate) fn angles(period: &Period) -> [f64; 2] {
 
 /// When the pulses began to move as only a stop moves them: faster than any gait or soft start of these tests.
 pub(crate) fn ramp_begins(periods: &[Period]) -> Duration {
-    /// Largest step of an angle in 20 ms that is none of a stop \[rad\].
+    /// Largest step of an angle in 20 ms, except for those of a stop \[rad\].
     const GENTLE: f64 = 0.05;
     let moved = periods.windows(2).find(|pair| {
         let [then, now] = [angles(&pair[0]), angles(&pair[1])];

@@ -20,14 +20,14 @@ use crate::rig::{self, Image};
 /// Both pulses in steps of the PWM's counter; none: off.
 type Pulses = Option<[u32; 2]>;
 
-/// What is done, one after the other.
+/// Sequence of steps.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Scenario {
     step: Vec<Step>,
 }
 
-/// One request. `at_s`: so long after the first cycle began, on the robot's clock; without it, at once.
+/// One request, `at_s` after the first cycle began, on the robot's clock; without it, at once.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(tag = "do", rename_all = "lowercase", deny_unknown_fields)]
 enum Step {
@@ -246,7 +246,7 @@ impl Device for Watched {
     }
 }
 
-/// As the firmware's PWM takes them: to the nearest step of 320 ns.
+/// Rounds as the firmware's PWM does: to the nearest step of 320 ns.
 fn counts(pulses_ns: Option<[u32; 2]>) -> Pulses {
     pulses_ns.map(|pulses| pulses.map(|ns| (ns + 160) / 320))
 }

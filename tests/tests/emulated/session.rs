@@ -179,10 +179,10 @@ fn edges_against_registers(edges: &[Edge], periods: &[Period]) -> (f64, f64) {
     (width, apart)
 }
 
-/// What a PIO program would do: three cycles of 8 ns a count.
+/// Step of a PIO program: three cycles of 8 ns a count.
 const PIO_STEP_NS: u32 = 24;
 
-/// What rounding the pulses of a table to steps makes of its angles \[degrees RMS\].
+/// Error of a table's angles after rounding the pulses to steps \[degrees RMS\].
 fn rms_of_steps(table: &GaitTable, cycles: u32, step_ns: u32) -> f64 {
     let ticks = cycles * PERIOD_US / TICK_US;
     let squares = (0..ticks).flat_map(|tick| {

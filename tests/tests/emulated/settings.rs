@@ -11,7 +11,7 @@ use rand_chacha::ChaCha8Rng;
 use crate::promise::seen;
 use crate::rig::{self, Port};
 
-/// Where `memory.x` puts the settings, from the start of the flash.
+/// Location of the settings in `memory.x`, from the start of the flash.
 const SETTINGS: std::ops::Range<usize> = 0x1f_c000..0x20_0000;
 
 fn told(robot: &mut Robot<Port>) -> (i16, bool) {
@@ -53,9 +53,9 @@ fn settings_that_are_garbage_are_told_and_can_be_set_anew() {
     );
 }
 
-/// What the makers of flash chips allow for one sector, where 45 ms are usual.
+/// Maximum in the data sheets of flash chips for one sector; 45 ms are usual.
 const SLOWEST_ERASE: Duration = Duration::from_millis(400);
-/// What a rotation takes off a cut's count: a sector erased, and some twenty times a page programmed for a few bytes.
+/// Bytes of a rotation, as counted for cuts: a sector erased, and some twenty times a page programmed for a few bytes.
 const ROTATION_BYTES: u32 = 4096 + 20 * 256;
 
 /// One call may erase several sectors, each of them nearly as long as the watchdog waits: where nothing can be read, and

@@ -26,13 +26,13 @@ const TO_OFF: Duration = Duration::from_millis(800 + 500);
 
 /// From the last fresh keep-alive to no pulses.
 const FRESH_TO_OFF: Duration = Duration::from_secs(2);
-/// So old may be what a keep-alive tells (docs/security.md).
+/// Largest age of the time in a fresh keep-alive (docs/security.md).
 const FRESH: Duration = Duration::from_secs(1);
 
 type Witness = Box<dyn FnMut(TracedFrame<'_>) + Send>;
 type Slow = FaultyPort<TracedPort<Port, Witness>>;
 
-/// Keep-alives as they come out of the buffer: when, and the time that they tell.
+/// Keep-alives as they leave the buffer: time, and the robot's time in them.
 #[derive(Clone, Default)]
 struct Delivered(Arc<Mutex<Vec<(Duration, Duration)>>>);
 

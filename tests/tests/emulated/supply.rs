@@ -1,5 +1,5 @@
-//! R8 for a weak supply: the chip cannot tell a dip of it from a switch, so starts after short runs are counted, over power
-//! that was off too.
+//! R8 with a weak supply: the chip cannot distinguish a dip of it from a switch, so starts after short runs are counted, across
+//! power cycles too.
 
 use std::time::Duration;
 

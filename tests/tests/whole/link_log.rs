@@ -1,4 +1,4 @@
-//! The link log of a session holds every frame both ways, and it alone tells the session again.
+//! The link log of a session holds every frame in both directions, and is sufficient to repeat the session.
 
 use crate::traced;
 

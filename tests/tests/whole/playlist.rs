@@ -64,7 +64,7 @@ fn watched(swimmer: Swimmer<f64>, seed: u64) -> VirtualPort<Watched> {
     VirtualPort::new(device, WireSpeed::robot())
 }
 
-/// Gaits that join where joining costs least, and gaits that join at the straight shape, for where there is no room to bend.
+/// Gaits joined at the shape with the least cost, and gaits joined at the straight shape, for places too narrow to bend.
 fn robot() -> &'static (Model<f64>, [Family; 2]) {
     static ROBOT: OnceLock<(Model<f64>, [Family; 2])> = OnceLock::new();
     ROBOT.get_or_init(|| {
@@ -97,7 +97,7 @@ fn joined_at(shape: [f64; 2]) -> Family {
     Family { gaits, mirrored }
 }
 
-/// With the first gaits where they have room to bend, else with those that join straight.
+/// Plan with the first gaits if it succeeds, else with those that join at the straight shape.
 fn planned<'a>(
     model: &Model<f64>,
     [bent, straight]: &'a [Family; 2],
@@ -172,7 +172,7 @@ fn play<P: Port>(robot: &mut Robot<P>, legs: Vec<Leg>) -> Result<(), LinkError> 
     played.map(|status| assert_eq!(status.unwrap().cause, StopCause::Finished))
 }
 
-/// Where it truly got, seen from where it lay.
+/// True final pose, relative to the start.
 fn swum_by(swimmer: Swimmer<f64>, tables: &[PlaylistTable], seed: u64) -> (Pose<f64>, Watched) {
     let mut robot = Robot::connect(watched(swimmer, seed), seed).unwrap();
     let start = robot.port().device().twin.pose();
@@ -220,7 +220,7 @@ fn apart(one: &Pose<f64>, other: &Pose<f64>) -> [f64; 2] {
     ]
 }
 
-/// Whether the swimmer has room where it is to end, in the shape that it comes there with: bent to one side or the other.
+/// `true` if the swimmer fits at its final pose, in the shape that it arrives with: bent to one side or the other.
 fn has_room(model: &Model<f64>, family: &Family, target: &Pose<f64>) -> bool {
     [family.shape(), -family.shape()].iter().any(|shape| {
         let way = Polyline::new([*shape, Vector2::zeros()]);
@@ -359,7 +359,7 @@ fn a_bad_link_changes_nothing() {
     assert!(apart(&clean, &there)[0] < 1e-6, "{clean:?} {there:?}");
 }
 
-/// Sent too late: the robot comes to rest by itself after the gait before, and that is told.
+/// A table that arrives too late: the robot comes to rest by itself after the gait before, and reports it.
 #[test]
 fn a_table_that_is_late_ends_the_play() {
     let table = |radius: f64| {

@@ -199,7 +199,7 @@ fn present(file: &TrackFile, kind: PointKind) -> Vec<(&str, usize)> {
         .collect()
 }
 
-/// How many points of a kind a row has, for each count the number of rows.
+/// Histogram of the number of points of a kind per row.
 fn census(file: &TrackFile, kind: PointKind) -> Vec<(usize, usize)> {
     let mut rows = std::collections::BTreeMap::new();
     for row in 0..file.frames() {
@@ -471,7 +471,7 @@ fn no_sample_is_left_out() {
     }
 }
 
-/// What must be said of each file.
+/// Expected contents of each file.
 struct Expected {
     file: &'static str,
     format: &'static str,
@@ -577,7 +577,7 @@ fn the_figures_of_the_manifest() {
     for expected in COLLECTION {
         let held = tracks(expected.file);
         assert_eq!(held.format.to_string(), expected.format);
-        // Stamps are rounded, or jitter; a single frame tells no rate.
+        // Stamps are rounded, or jitter; a single frame has no rate.
         if expected.frames > 1 {
             let off = held.rate_hz - expected.rate_hz;
             assert!(off.abs() <= 5e-3 * expected.rate_hz, "{}", held.rate_hz);
@@ -588,7 +588,7 @@ fn the_figures_of_the_manifest() {
     }
 }
 
-/// Where the recordings are, no test of this file is ignored: a build from before they came is built again.
+/// If the recordings exist, no test of this file is ignored: a build from before they came is built again.
 #[test]
 fn the_real_recordings_are_tested_where_they_are() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/optitrack");

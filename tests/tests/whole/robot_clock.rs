@@ -1,5 +1,5 @@
-//! The robot's log and the cameras' track of one session: by the log's cycles, phases are right where the track alone tells them
-//! badly, and cycles that a pause broke are left out.
+//! The robot's log and the cameras' track of one session: with the log, phases are right even if the track alone determines them
+//! poorly, and cycles interrupted by a pause are left out.
 
 use crate::traced;
 
@@ -168,7 +168,7 @@ fn the_logs_cycles_are_the_robots() {
         1e3 * log,
         1e3 * heading
     );
-    // The log tells ticks of 20 ms; its means over a cycle tell them within a millisecond.
+    // The log has a resolution of 20 ms; its means over a cycle are accurate to a millisecond.
     assert!(log < 2e-3 && heading < 20e-3, "{log} {heading}");
     assert_eq!(
         (by_log.cycles.phase, by_heading.cycles.phase),
