@@ -4,10 +4,8 @@ use std::path::Path;
 use std::str::FromStr;
 use std::time::Duration;
 
-use operations::{
-    Context, Error, GaitSource, SwimmerSource, warn_if_for_another, warn_if_outdated,
-};
-use swimmer_files::{AnyGait, GaitFile, GaitSpec, SwimmerFile, parse_angle, parse_rate};
+use operations::{Context, Error, SwimmerSource, warn_if_outdated};
+use swimmer_files::{AnyGait, GaitSpec, SwimmerFile, parse_angle, parse_rate};
 use swimmer_model::Model;
 
 use crate::failure::{Failure, Outcome};
@@ -136,18 +134,6 @@ pub(crate) fn say_if_stale(path: &Path) -> Outcome {
 /// Loads the gait that `--gait` names.
 pub(crate) fn load_gait(spec: &GaitSpec) -> Outcome<AnyGait> {
     Ok(spec.load()?)
-}
-
-/// Loads the gait that `--gait` names, for this swimmer. Prints a warning if the file names another swimmer.
-pub(crate) fn load_gait_for(swimmer: &SwimmerFile, spec: &GaitSpec) -> Outcome<AnyGait> {
-    printing(|context| GaitSource::from(spec.clone()).load_for(swimmer, context))
-}
-
-/// Prints a warning if a gait file was made for another swimmer.
-pub(crate) fn say_if_for_another(swimmer: &SwimmerFile, file: &GaitFile, gait: &GaitSpec) {
-    let mut context = Context::on_disk();
-    warn_if_for_another(swimmer, file, &gait.to_string(), &mut context);
-    asides(&context);
 }
 
 /// Runs an operation on the file system and prints its warnings.

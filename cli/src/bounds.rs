@@ -1,9 +1,9 @@
 //! Bounds on shapes, as every command takes them from the command line.
 
+use operations::bounds::BoundsRequest;
 use swimmer_files::{ArcKind, Bounds, SwimmerFile};
 
 use crate::arguments::{length, positive_angle};
-use crate::playable::playable;
 
 /// Bounds that hold all round a gait.
 #[derive(Debug, Clone, Copy, clap::Args)]
@@ -44,17 +44,6 @@ struct LinkBounds {
     /// warning says if 30 s a cycle are too short
     #[arg(long)]
     playable: bool,
-}
-
-impl LinkBounds {
-    /// The bounds, and the robot's where they shall hold.
-    fn tightened(self, bounds: Bounds, file: &SwimmerFile) -> Bounds {
-        if self.playable {
-            playable(bounds, file)
-        } else {
-            bounds
-        }
-    }
 }
 
 /// The options that bounds were given by, so that a refusal names those that are there.
@@ -111,7 +100,7 @@ impl WholeBounds {
 
     /// The bounds for a swimmer.
     pub(crate) fn of(self, file: &SwimmerFile) -> Bounds {
-        self.links.tightened(self.into(), file)
+        BoundsRequest::from(self).of(file)
     }
 }
 
@@ -123,35 +112,36 @@ impl QuarterBounds {
 
     /// The bounds for a swimmer.
     pub(crate) fn of(self, file: &SwimmerFile) -> Bounds {
-        self.links.tightened(self.into(), file)
+        BoundsRequest::from(self).of(file)
     }
 }
 
-impl From<WholeBounds> for Bounds {
-    fn from(told: WholeBounds) -> Self {
+impl From<WholeBounds> for BoundsRequest {
+    fn from(given: WholeBounds) -> Self {
         Self {
-            max_angle: told.max_angle,
-            ..told.links.into()
+            max_angle: given.max_angle,
+            ..given.links.into()
         }
     }
 }
 
-impl From<QuarterBounds> for Bounds {
-    fn from(told: QuarterBounds) -> Self {
+impl From<QuarterBounds> for BoundsRequest {
+    fn from(given: QuarterBounds) -> Self {
         Self {
-            max_angle: told.max_angle,
-            min_angle: told.min_angle,
-            sector: told.sector,
-            ..told.links.into()
+            max_angle: given.max_angle,
+            min_angle: given.min_angle,
+            sector: given.sector,
+            ..given.links.into()
         }
     }
 }
 
-impl From<LinkBounds> for Bounds {
-    fn from(told: LinkBounds) -> Self {
+impl From<LinkBounds> for BoundsRequest {
+    fn from(given: LinkBounds) -> Self {
         Self {
-            no_overlap: told.no_overlap || told.clearance.is_some(),
-            clearance: told.clearance.unwrap_or(0.0),
+            no_overlap: given.no_overlap,
+            clearance: given.clearance.unwrap_or(0.0),
+            playable: given.playable,
             ..Self::default()
         }
     }

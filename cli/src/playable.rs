@@ -13,25 +13,10 @@ use crate::arguments::model;
 use crate::failure::{Failure, Outcome};
 use crate::own_robot::PERIOD_S;
 
-/// Clearance of the first search over the margin of the robot.
-const ROOM: f64 = 1.05;
 /// Most searches.
 const MOST_SEARCHES: usize = 5;
 /// What is added to the clearance, over what was missing.
 const BEYOND: f64 = 1.1;
-
-/// These bounds, and those of the robot of the file.
-pub(crate) fn playable(bounds: Bounds, file: &SwimmerFile) -> Bounds {
-    let largest = file.servo.unwrap_or_default().max_angle;
-    let links = &file.swimmer.links;
-    let margin = f64::from(gait_player::clearance::MARGIN_TURN) * links.front.max(links.back);
-    Bounds {
-        max_angle: Some(bounds.max_angle.map_or(largest, |given| given.min(largest))),
-        no_overlap: true,
-        clearance: bounds.clearance.max(ROOM * margin),
-        ..bounds
-    }
-}
 
 /// Searches within bounds. If the gait shall be playable, searches again with more clearance as long as what was found comes too
 /// close as it is played.

@@ -27,6 +27,14 @@ impl Context {
         }
     }
 
+    /// A context without a file system, as in a browser.
+    pub fn without_files() -> Self {
+        Self {
+            files: Files::Unavailable,
+            warnings: Vec::new(),
+        }
+    }
+
     /// Adds a warning.
     pub(crate) fn warn(&mut self, warning: impl Into<String>) {
         self.warnings.push(warning.into());

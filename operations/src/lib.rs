@@ -15,9 +15,12 @@
 //! # Ok::<(), operations::Error>(())
 //! ```
 
+pub mod bounds;
+pub mod certify;
 mod context;
 mod error;
 pub mod fluid;
+pub mod height_map;
 pub mod played;
 pub mod robot_limits;
 pub mod simulate;

@@ -173,7 +173,7 @@ fn damage_is_told_and_never_read_as_truth() {
         wrong.len(),
         wrong.join("\n")
     );
-    let golden = folder().join("mutilated/outcomes.txt");
+    let golden = folder().join("campaigns/mutilated/outcomes.txt");
     if std::env::var_os("UPDATE_OUTCOMES").is_some() {
         std::fs::write(&golden, &table).unwrap();
     }

@@ -2,15 +2,14 @@
 
 use std::fmt;
 
-use gait_optimizer::{Certificate, CertifyError, Objective, Verdict, certify, farthest_in_period};
-use serde::Serialize;
-use swimmer_files::{AnyGait, Bounds, GaitFile, GaitSpec};
+use gait_optimizer::{Objective, Verdict};
+use operations::{Context, Files, GaitSource, SwimmerSource, certify, warn_if_for_another};
+use swimmer_files::GaitSpec;
 
-use crate::arguments::{gait, load_gait, load_swimmer, say_if_for_another};
+use crate::arguments::gait;
 use crate::bounds::QuarterBounds;
 use crate::failure::{Failure, Outcome};
-use crate::output::Output;
-use crate::own_robot::{PERIOD_S, say_if_beyond};
+use crate::output::{Output, asides};
 use crate::quantity;
 
 /// Hold a gait against the necessary conditions of an optimum, each with its number and tolerance
@@ -37,64 +36,35 @@ pub(crate) struct Certify {
     bounds: QuarterBounds,
 }
 
-/// Samples of a circle or a square.
-const SAMPLES: usize = 1024;
-
 impl Certify {
     /// Certifies the gait and prints the certificate.
     pub(crate) fn run(self, output: Output) -> Outcome {
-        let swimmer = load_swimmer(&self.swimmer)?;
-        let mut file = self.load()?;
-        if self.fixed_period {
-            // The conditions are the same for every rate of the servos, and so for every length of the period.
-            file.optimal_period.get_or_insert(1.0);
-        }
-        say_if_for_another(&swimmer, &file, &self.gait);
-        let objective = self.objective.unwrap_or(file.objective);
-        if objective == Objective::Unspecified {
-            return Err(Failure::BadInput(format!(
-                "{} does not tell what it shall be optimal for; add --objective displacement, efficiency, turning, sideways or speed",
-                self.gait.readable()
-            )));
-        }
-        if let Ok(curve) = AnyGait::from_file(&file) {
-            say_if_beyond(&swimmer, &curve, PERIOD_S);
-        }
-        let told = self.bounds.of(&swimmer);
-        let bounds = if told == Bounds::default() {
-            file.bounds
-        } else {
-            told
-        };
-        let certificate = certify(&swimmer.swimmer, &file, objective, &bounds)?;
+        let mut context = Context::on_disk();
+        let certified = self.certified(&mut context);
+        asides(&context);
+        let (swimmer_name, certified) = certified?;
         let title = format!(
-            "{}, {}, {} {objective}, {bounds}",
-            swimmer.name,
+            "{swimmer_name}, {}, {} {}, {}",
             self.gait.readable(),
-            if objective.is_joined() {
+            if certified.objective.is_joined() {
                 "fastest"
             } else {
                 "most"
-            }
+            },
+            certified.objective,
+            certified.bounds
         );
-        let checks = certificate.checks();
+        output.rendered(
+            &certified,
+            &Text {
+                title: &title,
+                output: &certified,
+            },
+        );
+        let checks = certified.certificate.checks();
         let failed = checks.iter().filter(|check| !check.pass).count();
         let of = checks.len();
-        let verdict = certificate.verdict();
-        let own_period = objective == Objective::Speed
-            && file.optimal_period.is_none()
-            && verdict != Verdict::Pass;
-        let passes_for_period_rad = if own_period {
-            farthest_in_period(&swimmer.swimmer, &file, &bounds)?
-        } else {
-            None
-        };
-        output.answer(&Answer {
-            title,
-            certificate,
-            passes_for_period_rad,
-        });
-        match verdict {
+        match certified.certificate.verdict() {
             Verdict::Pass => Ok(()),
             Verdict::Fail => Err(Failure::Answered(format!(
                 "the gait is no certified optimum: {failed} of {of} conditions do not hold"
@@ -106,15 +76,27 @@ impl Certify {
         }
     }
 
-    /// Loads the gait with everything that its file states.
-    fn load(&self) -> Outcome<GaitFile> {
-        match &self.gait {
-            GaitSpec::File { path, reversed } => {
-                let file = GaitFile::load(path)?;
-                Ok(if *reversed { file.reversed() } else { file })
-            }
-            closed_form => Ok(GaitFile::sampled(&load_gait(closed_form)?, SAMPLES)),
+    /// Name of the swimmer, and the certificate.
+    fn certified(
+        &self,
+        context: &mut Context,
+    ) -> Result<(String, certify::Output), operations::Error> {
+        let swimmer = SwimmerSource::from(self.swimmer.as_str()).load(context)?;
+        let gait = GaitSource::from(self.gait.clone()).file(Files::Disk)?;
+        warn_if_for_another(&swimmer, &gait, &self.gait.to_string(), context);
+        if self.objective.is_none() && gait.objective == Objective::Unspecified {
+            return Err(operations::Error::refused(format!(
+                "{} does not tell what it shall be optimal for; add --objective displacement, efficiency, turning, sideways or speed",
+                self.gait.readable()
+            )));
         }
+        let options = certify::Options {
+            objective: self.objective,
+            fixed_period: self.fixed_period,
+            bounds: self.bounds.into(),
+        };
+        let certified = certify::run(&swimmer, gait, &options, context)?;
+        Ok((swimmer.name, certified))
     }
 }
 
@@ -127,27 +109,15 @@ fn objective(text: &str) -> Result<Objective, String> {
     }
 }
 
-impl From<CertifyError> for Failure {
-    /// No condition can be evaluated: bad input.
-    fn from(error: CertifyError) -> Self {
-        Self::bad_input(&error)
-    }
+/// Output as text.
+struct Text<'a> {
+    title: &'a str,
+    output: &'a certify::Output,
 }
 
-#[derive(Debug, Serialize)]
-struct Answer {
-    #[serde(skip)]
-    title: String,
-    #[serde(flatten)]
-    certificate: Certificate,
-    /// Angle that the faster servo turns in the period for which the gait goes farthest, if it is not the fastest of any period.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    passes_for_period_rad: Option<f64>,
-}
-
-impl fmt::Display for Answer {
+impl fmt::Display for Text<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let checks = self.certificate.checks();
+        let checks = self.output.certificate.checks();
         let mut table = quantity::Table::new(["condition", "number", "", "tolerance", ""]);
         for check in checks {
             let sign = if check.condition.is_from_below() {
@@ -165,7 +135,7 @@ impl fmt::Display for Answer {
         }
         let failed = checks.iter().filter(|check| !check.pass).count();
         let of = checks.len();
-        let verdict = match (failed, self.certificate.verdict()) {
+        let verdict = match (failed, self.output.certificate.verdict()) {
             (0, _) => format!("all {of} conditions hold"),
             (_, Verdict::Undecided) => {
                 format!("undecided from these samples: {failed} of {of} conditions do not hold")
@@ -173,7 +143,7 @@ impl fmt::Display for Answer {
             _ => format!("{failed} of {of} conditions fail"),
         };
         write!(f, "{}\n{table}\n  {verdict}", self.title)?;
-        if let Some(turned) = self.passes_for_period_rad {
+        if let Some(turned) = self.output.passes_for_period_rad {
             write!(
                 f,
                 "\n  it is the farthest gait in its own period ({turned:.4} rad at the full rate of the faster servo), but a gait of \

@@ -30,10 +30,11 @@ use crate::interrupt::Interrupt;
 use crate::new_folder::NewFolder;
 use crate::output::Output;
 use crate::own_robot::PERIOD_S;
-use crate::playable::{playable, searched};
+use crate::playable::searched;
 use crate::progress::Progress;
 use crate::report;
 use crate::virtual_robot::{Carrier, EmulatedBoard, VirtualLine};
+use operations::bounds::playable;
 
 /// Run the whole loop on a virtual robot and leave a report
 ///

@@ -2,22 +2,22 @@
 
 pub(crate) mod picture;
 
+use std::fmt;
 use std::path::PathBuf;
 
 use clap::ValueEnum;
-use gait_optimizer::{AreaRule, HeightMap as Map, HeightMapError, LevelCurve, Row};
-use serde::Serialize;
-use swimmer_files::GaitSpec;
+use gait_optimizer::{HeightMap as Map, Row};
+use operations::height_map::{self, GaitArea, NamedGait};
+use operations::{Context, GaitSource, SwimmerSource, robot_limits};
+use swimmer_files::{GaitSpec, SwimmerFile};
 
-use crate::arguments::{gait, load_gait_for, load_swimmer, positive_angle};
+use crate::arguments::{gait, positive_angle};
 use crate::csv_text::csv_text;
-use crate::document::{Document, object};
-use crate::failure::{Failure, Outcome};
+use crate::failure::Outcome;
 use crate::new_file::may_be_written;
-use crate::output::{Output, verbose};
-use crate::own_robot::{PERIOD_S, say_if_beyond};
+use crate::output::{Output, asides, verbose};
 use crate::picture_file::Kind;
-use crate::quantity;
+use crate::quantity::{self, Rows};
 
 /// Map the height function, with its zero-level curves and gaits
 ///
@@ -43,8 +43,7 @@ pub(crate) struct HeightMap {
 }
 
 /// A component of the displacement.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Component {
     /// Along the swimmer, over L
     X,
@@ -57,16 +56,18 @@ enum Component {
 /// Nodes of the table in each direction.
 const TABLE: usize = 201;
 
-impl Component {
-    fn row(self) -> Row {
-        match self {
-            Self::X => Row::X,
-            Self::Y => Row::Y,
-            Self::Theta => Row::Theta,
+impl From<Component> for height_map::Component {
+    fn from(component: Component) -> Self {
+        match component {
+            Component::X => Self::X,
+            Component::Y => Self::Y,
+            Component::Theta => Self::Theta,
         }
     }
+}
 
-    /// As people write it.
+impl Component {
+    /// Symbol of the height.
     fn symbol(self) -> &'static str {
         match self {
             Self::X => "H_x",
@@ -75,7 +76,7 @@ impl Component {
         }
     }
 
-    /// With its unit.
+    /// Height with its unit.
     fn quantity(self) -> &'static str {
         match self {
             Self::X => "H_x/L [rad⁻²]",
@@ -86,29 +87,20 @@ impl Component {
 }
 
 impl HeightMap {
-    /// Maps, writes and answers.
+    /// Computes the map, writes the figure or table, and prints the output.
     pub(crate) fn run(self, output: Output) -> Outcome {
         self.output.as_deref().map_or(Ok(()), may_be_written)?;
         let kinds = [Kind::Svg, Kind::Png, Kind::Csv];
         let kind = self.output.as_deref().map(|path| Kind::of(path, &kinds));
         let kind = kind.transpose()?;
-        let file = load_swimmer(&self.swimmer)?;
-        let gaits = self
-            .gaits
-            .iter()
-            .map(|spec| Ok((spec.readable(), load_gait_for(&file, spec)?)))
-            .collect::<Outcome<Vec<_>>>()?;
-        for (_, gait) in &gaits {
-            say_if_beyond(&file, gait, PERIOD_S);
-        }
-        let map = Map::new(&file.swimmer, self.max_angle)?;
-        let row = self.row.row();
-        let curves = map.zero_curves(row);
-        let rules = gaits
-            .iter()
-            .map(|(_, gait)| Ok(map.area_rule(gait)?))
-            .collect::<Outcome<Vec<_>>>()?;
+        let mut context = Context::on_disk();
+        let read = self.read(&mut context);
+        asides(&context);
+        let (file, gaits) = read?;
+        let map = Map::new(&file.swimmer, self.max_angle).map_err(operations::Error::from)?;
+        let mut described = height_map::run(&map, self.row.into(), &gaits)?;
         if let (Some(path), Some(kind)) = (&self.output, kind) {
+            let row = described.row.row();
             let text = match kind {
                 Kind::Csv => table(&map, row)?,
                 _ => picture::svg(&picture::Figure {
@@ -116,43 +108,65 @@ impl HeightMap {
                     quantity: self.row.quantity(),
                     map: &map,
                     row,
-                    curves: &curves,
+                    curves: &described.zero_curves,
                     gaits: &gaits,
                 })?,
             };
             kind.write(path, &text)?;
         }
-        let mut answer = Document::new(format!(
-            "{}, {} on joint angles up to {} rad",
-            file.name,
-            self.row.symbol(),
-            self.max_angle
-        ));
-        self.tell(&mut answer, &map, curves);
-        let rules: Vec<_> = gaits
-            .iter()
-            .zip(&rules)
-            .map(|((name, _), rule)| self.tell_rule(&mut answer, name, rule))
-            .collect();
-        answer.key("gaits", rules);
-        if let Some(path) = self.output {
-            answer.row("written to", path.display().to_string());
-            answer.key("written", path);
-        }
-        output.answer(&answer);
+        described.written = self.output;
+        output.rendered(
+            &described,
+            &Text {
+                swimmer_name: &file.name,
+                component: self.row,
+                output: &described,
+            },
+        );
         Ok(())
     }
 
-    /// Adds what the map and its zero-level curves say.
-    fn tell(&self, answer: &mut Document, map: &Map, curves: Vec<LevelCurve>) {
-        let row = self.row.row();
-        let per_length = match self.row {
+    /// Reads the swimmer and the gaits.
+    fn read(
+        &self,
+        context: &mut Context,
+    ) -> Result<(SwimmerFile, Vec<NamedGait>), operations::Error> {
+        let file = SwimmerSource::from(self.swimmer.as_str()).load(context)?;
+        let mut gaits = Vec::with_capacity(self.gaits.len());
+        for spec in &self.gaits {
+            let gait = GaitSource::from(spec.clone()).load_for(&file, context)?;
+            gaits.push(NamedGait {
+                name: spec.readable(),
+                gait,
+            });
+        }
+        for NamedGait { gait, .. } in &gaits {
+            let warning = robot_limits::warning(&file, gait, robot_limits::PERIOD_S);
+            context.warnings.extend(warning);
+        }
+        Ok((file, gaits))
+    }
+}
+
+/// Output as text.
+struct Text<'a> {
+    swimmer_name: &'a str,
+    component: Component,
+    output: &'a height_map::Output,
+}
+
+impl fmt::Display for Text<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            swimmer_name,
+            component,
+            output,
+        } = self;
+        let symbol = component.symbol();
+        let per_length = match component {
             Component::X | Component::Y => "/L",
             Component::Theta => "",
         };
-        let at_origin = map.height(row, &[0.0, 0.0].into());
-        let (on_diagonal, on_antidiagonal) =
-            (map.zeros_on_diagonal(row), map.zeros_on_antidiagonal(row));
         let zeros = |zeros: &[f64]| match zeros {
             [] => "none".to_owned(),
             zeros => zeros
@@ -161,27 +175,30 @@ impl HeightMap {
                 .collect::<Vec<_>>()
                 .join(", "),
         };
+        let curves = &output.zero_curves;
         let closed = curves.iter().filter(|curve| curve.closed).count();
         let open = curves.len() - closed;
-        answer
-            .row(
-                "at the straight shape",
-                format!(
-                    "{}{per_length} = {:.10}",
-                    self.row.symbol(),
-                    // Adding zero turns a rounded -0 into 0.
-                    (at_origin * 1e10).round() / 1e10 + 0.0
-                ),
-            )
-            .row("zero where φ₁ = φ₂ > 0", zeros(&on_diagonal))
-            .row("zero where −φ₁ = φ₂ > 0", zeros(&on_antidiagonal))
-            .row(
-                "zero-level curves",
-                format!("{closed} closed, {open} from edge to edge"),
-            );
-        let convergence = map.convergence();
+        let mut rows = Rows::default();
+        rows.row(
+            "at the straight shape",
+            format!(
+                "{symbol}{per_length} = {:.10}",
+                // Adding zero turns a rounded -0 into 0.
+                (output.at_origin_over_length * 1e10).round() / 1e10 + 0.0
+            ),
+        )
+        .row("zero where φ₁ = φ₂ > 0", zeros(&output.zeros_on_diagonal))
+        .row(
+            "zero where −φ₁ = φ₂ > 0",
+            zeros(&output.zeros_on_antidiagonal),
+        )
+        .row(
+            "zero-level curves",
+            format!("{closed} closed, {open} from edge to edge"),
+        );
         if verbose() {
-            answer.row(
+            let convergence = output.convergence;
+            rows.row(
                 "frame",
                 format!(
                     "order {}; from order {} it moved {:.0e} inside, {:.0e} at the corners",
@@ -192,50 +209,37 @@ impl HeightMap {
                 ),
             );
         }
-        answer
-            .key("row", self.row)
-            // D: the frame is the best over |φᵢ| ≤ D.
-            .key("max_angle_rad", self.max_angle)
-            // For the row theta in rad/rad².
-            .key("at_origin_over_length", at_origin)
-            // φ₂ of the first zeros with φ₁ = φ₂ > 0 and with φ₁ = −φ₂ < 0, and of all.
-            .key("zero_on_diagonal", on_diagonal.first().copied())
-            .key("zero_on_antidiagonal", on_antidiagonal.first().copied())
-            .key("zeros_on_diagonal", on_diagonal)
-            .key("zeros_on_antidiagonal", on_antidiagonal)
-            .key("convergence", convergence)
-            .key("zero_curves", curves);
-    }
-
-    /// Adds the area rule for one gait; its keys, x and y over L and θ in rad.
-    fn tell_rule(&self, answer: &mut Document, gait: &str, rule: &AreaRule) -> Document {
-        let over_length = match self.row {
-            Component::X | Component::Y => " L",
-            Component::Theta => " rad",
-        };
-        let component = self.row.row().index();
-        let [area, swum] = [rule.area, rule.swum].map(|values| values[component]);
-        let off = quantity::relative(area, swum)
-            .filter(|off| off.abs() < 10.0)
-            .map(|off| format!(" ({})", quantity::deviation(off)))
-            .unwrap_or_default();
-        answer.row(
-            gait,
-            format!(
-                "encloses {:.6}{over_length}, swims {:.6}{over_length}{off}",
-                rounded(area),
-                rounded(swum)
-            ),
-        );
-        let of = |values: nalgebra::Vector3<f64>| <[f64; 3]>::from(values);
-        object! {
-            "gait": gait.to_owned(),
-            // ∬ H over what the gait encloses, seen from the middle link at the gait's start, and the same as swum.
-            "area": of(rule.area),
-            "swum": of(rule.swum),
-            "deviation": of(rule.deviation()),
+        for rule in &output.gaits {
+            rows.row(rule.gait.as_str(), area_rule(rule, *component));
         }
+        if let Some(path) = &output.written {
+            rows.row("written to", path.display().to_string());
+        }
+        write!(
+            f,
+            "{swimmer_name}, {symbol} on joint angles up to {} rad\n{rows}",
+            output.max_angle_rad
+        )
     }
+}
+
+/// Area rule of a gait as text.
+fn area_rule(rule: &GaitArea, component: Component) -> String {
+    let unit = match component {
+        Component::X | Component::Y => " L",
+        Component::Theta => " rad",
+    };
+    let index = height_map::Component::from(component).row().index();
+    let [area, swum] = [rule.area[index], rule.swum[index]];
+    let off = quantity::relative(area, swum)
+        .filter(|off| off.abs() < 10.0)
+        .map(|off| format!(" ({})", quantity::deviation(off)))
+        .unwrap_or_default();
+    format!(
+        "encloses {:.6}{unit}, swims {:.6}{unit}{off}",
+        rounded(area),
+        rounded(swum)
+    )
 }
 
 fn table(map: &Map, row: Row) -> Outcome<String> {
@@ -251,14 +255,4 @@ fn table(map: &Map, row: Row) -> Outcome<String> {
 /// To six decimals, without a minus before zero.
 fn rounded(value: f64) -> f64 {
     (value * 1e6).round() / 1e6 + 0.0
-}
-
-impl From<HeightMapError> for Failure {
-    /// A swimmer, square or gait that makes no sense is bad input; one that does not converge was tried.
-    fn from(error: HeightMapError) -> Self {
-        match error {
-            HeightMapError::NotConverged { .. } => Self::tried(&error),
-            _ => Self::bad_input(&error),
-        }
-    }
 }

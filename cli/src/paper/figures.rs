@@ -5,6 +5,7 @@ mod experiment;
 
 use gait_optimizer::{HeightMap, OptimalGait, Row as HeightRow, SimpleShape};
 use nalgebra::Vector2;
+use operations::height_map::NamedGait;
 use plotters::style::RGBColor;
 use swimmer_files::AnyGait;
 use swimmer_model::{Gait as _, Stroke};
@@ -302,7 +303,10 @@ fn height_map(map: &HeightMap, simple: &Simple) -> Outcome<Figure> {
         if best.amplitude < map.half_width() {
             let gait = AnyGait::square(best.amplitude);
             figure = figure.gait(name, MEASURED, drawn(&gait));
-            gaits.push((name.to_owned(), gait));
+            gaits.push(NamedGait {
+                name: name.to_owned(),
+                gait,
+            });
         }
     }
     figure.picture = Some(picture::svg(&picture::Figure {

@@ -1,10 +1,10 @@
 //! Calls of the Explore tab: `swimmer`, `simulate`, `certify`, `optimize`, `height-map`, like the commands of those names, and
 //! additional data for the figures.
 
-mod bounds;
 mod certify;
 mod map;
 mod motion;
+mod objective;
 mod optimize;
 mod simulate;
 mod swimmer;
@@ -20,7 +20,7 @@ pub(crate) const CALLS: &[(&str, Call)] = &[
     ("simulate", simulate::simulate),
     ("gait-file", simulate::gait_file),
     ("tank", simulate::tank),
-    ("certify", certify::certify),
+    ("certify", certify::run),
     ("optimize", optimize::optimize),
     ("height-map", map::height_map),
     ("height-grid", map::height_grid),

@@ -12,8 +12,8 @@ use super::{CYCLES, Round};
 use crate::arguments::model;
 use crate::commands::calibrate::{MiddleLink, single_run};
 use crate::failure::{Failure, Outcome};
-use crate::playable::playable;
 use crate::threads;
+use operations::bounds::playable;
 
 /// Both, on the way from the fitted model to the tank.
 #[derive(Debug, Clone, Serialize)]

@@ -1,8 +1,8 @@
 //! The height map as a figure: colours for height, lines for the zero-level curves and for gaits.
 
 use gait_optimizer::{HeightMap, LevelCurve, Row};
+use operations::height_map::NamedGait;
 use plotters::prelude::*;
-use swimmer_files::AnyGait;
 use swimmer_model::Gait as _;
 
 use crate::failure::{Failure, Outcome};
@@ -20,7 +20,7 @@ pub(crate) struct Figure<'a> {
     pub(crate) map: &'a HeightMap,
     pub(crate) row: Row,
     pub(crate) curves: &'a [LevelCurve],
-    pub(crate) gaits: &'a [(String, AnyGait)],
+    pub(crate) gaits: &'a [NamedGait],
 }
 
 /// Side of the map in pixels of the page.
@@ -134,7 +134,7 @@ fn draw(figure: &Figure<'_>, area: &Area<'_>) -> Result<(), String> {
             .draw_series(LineSeries::new(points, stroke(INK, ZERO_CURVE)))
             .map_err(|error| said(&error))?;
     }
-    for ((_, gait), color) in figure.gaits.iter().zip(CURVES.iter().cycle()) {
+    for (NamedGait { gait, .. }, color) in figure.gaits.iter().zip(CURVES.iter().cycle()) {
         let points: Vec<Point> = (0..=GAIT_POINTS)
             .map(|k| {
                 gait.at(f64::from(k % GAIT_POINTS) / f64::from(GAIT_POINTS))
@@ -174,7 +174,7 @@ fn draw(figure: &Figure<'_>, area: &Area<'_>) -> Result<(), String> {
         .map_err(|error| said(&error))?;
     let (bar_area, _) = bar_area.split_vertically((TOP + MAP) * SCALE);
     bar(figure, &bar_area, largest)?;
-    let named = figure.gaits.iter().map(|(name, _)| name.as_str());
+    let named = figure.gaits.iter().map(|named| named.name.as_str());
     let named = named.zip(CURVES.iter().copied().cycle());
     legend(area, (LEFT, TOP + MAP + BOTTOM), named)
 }

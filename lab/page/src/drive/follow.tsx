@@ -26,7 +26,7 @@ export function Follow() {
         <div class="plane">
           <Heights />
           <svg viewBox={`${-d} ${-d} ${2 * d} ${2 * d}`} role="img" aria-label="The joints’ set-point over the gait">
-            {curves.value?.zero_curves.map(({ points, closed }, k) => <path key={k} class="zero" d={line(points, closed)} />)}
+            {curves.value?.zero_curves.map(({ vertices, closed }, k) => <path key={k} class="zero" d={line(vertices, closed)} />)}
             {there && <path id="gait-there" class="gait first" d={line(typeof there === "string" ? curveOfText(there) : pairs(there), true)} />}
             <path id="gait-shown" class={`gait first ${differs ? "not-there" : ""}`} d={line(curveOf(activeGait(shown.value)), true)} />
             {told && <circle id="setpoint" class="joints" cx={phi1} cy={-phi2} r={d * 0.025} />}

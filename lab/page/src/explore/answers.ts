@@ -71,5 +71,5 @@ export interface Mapped {
   at_origin_over_length: number;
   zero_on_diagonal: number | null;
   zero_on_antidiagonal: number | null;
-  zero_curves: { closed: boolean; points: [number, number][] }[];
+  zero_curves: { closed: boolean; vertices: [number, number][] }[];
 }

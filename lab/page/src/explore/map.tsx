@@ -26,7 +26,7 @@ export function HeightMap() {
         <Heights />
         <svg id="map" viewBox={`${-d} ${-d} ${2 * d} ${2 * d}`} role="group" aria-label="Gaits over the map">
           <Axes d={d} />
-          {curves.value?.zero_curves.map(({ points, closed }, k) => <path key={k} class="zero" d={path(points, closed)} />)}
+          {curves.value?.zero_curves.map(({ vertices, closed }, k) => <path key={k} class="zero" d={path(vertices, closed)} />)}
           {overlaid.map((what) => (
             <path key={what} class={`overlaid of-${OPTIMA.indexOf(what)}`} d={path(curveOf({ kind: "optimum", what }), true)}>
               <title>{NAMES[what]}</title>

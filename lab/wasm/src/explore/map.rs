@@ -1,7 +1,8 @@
 //! `height-map` and `height-grid`: the height function as in `swimmer height-map`, and its values for a picture.
 
-use gait_optimizer::{HeightMap, LevelCurve, Row};
-use serde::{Deserialize, Serialize};
+use gait_optimizer::HeightMap;
+use operations::height_map::{self, Component};
+use serde::Deserialize;
 use swimmer_model::Swimmer;
 
 use crate::calls::{Lab, Outcome, json, numbers, parsed};
@@ -27,9 +28,9 @@ impl Memory {
 }
 
 #[derive(Deserialize)]
-struct Asked {
+struct Request {
     swimmer: SwimmerText,
-    row: RowAsked,
+    row: Component,
     /// \[rad\]
     max_angle: f64,
     /// Number of grid nodes along each axis.
@@ -37,72 +38,19 @@ struct Asked {
     count: usize,
 }
 
-#[derive(Clone, Copy, Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum RowAsked {
-    X,
-    Y,
-    Theta,
-}
-
-impl From<RowAsked> for Row {
-    fn from(row: RowAsked) -> Self {
-        match row {
-            RowAsked::X => Self::X,
-            RowAsked::Y => Self::Y,
-            RowAsked::Theta => Self::Theta,
-        }
-    }
-}
-
-#[derive(Serialize)]
-struct Mapped {
-    max_angle_rad: f64,
-    at_origin_over_length: f64,
-    zero_on_diagonal: Option<f64>,
-    zero_on_antidiagonal: Option<f64>,
-    zero_curves: Vec<Curve>,
-}
-
-#[derive(Serialize)]
-struct Curve {
-    closed: bool,
-    points: Vec<[f64; 2]>,
-}
-
-impl From<&LevelCurve> for Curve {
-    fn from(curve: &LevelCurve) -> Self {
-        Self {
-            closed: curve.closed,
-            points: curve
-                .points
-                .iter()
-                .map(|point| [point.x, point.y])
-                .collect(),
-        }
-    }
-}
-
 /// Zero-level curves and numbers of a row.
 pub(super) fn height_map(lab: &mut Lab, bytes: &[u8]) -> Outcome {
-    let asked: Asked = parsed(bytes)?;
-    let file = asked.swimmer.read()?;
-    let map = lab.explore.map(&file.swimmer, asked.max_angle)?;
-    let row = asked.row.into();
-    json(&Mapped {
-        max_angle_rad: asked.max_angle,
-        at_origin_over_length: map.height(row, &[0.0, 0.0].into()),
-        zero_on_diagonal: map.zeros_on_diagonal(row).first().copied(),
-        zero_on_antidiagonal: map.zeros_on_antidiagonal(row).first().copied(),
-        zero_curves: map.zero_curves(row).iter().map(Curve::from).collect(),
-    })
+    let request: Request = parsed(bytes)?;
+    let file = request.swimmer.read()?;
+    let map = lab.explore.map(&file.swimmer, request.max_angle)?;
+    json(&height_map::run(map, request.row, &[])?)
 }
 
 /// Heights on a uniform grid; φ₁ varies fastest.
 pub(super) fn height_grid(lab: &mut Lab, bytes: &[u8]) -> Outcome {
-    let asked: Asked = parsed(bytes)?;
-    let file = asked.swimmer.read()?;
-    let map = lab.explore.map(&file.swimmer, asked.max_angle)?;
-    let grid = map.grid(asked.row.into(), asked.count.clamp(2, 401));
+    let request: Request = parsed(bytes)?;
+    let file = request.swimmer.read()?;
+    let map = lab.explore.map(&file.swimmer, request.max_angle)?;
+    let grid = map.grid(request.row.row(), request.count.clamp(2, 401));
     numbers(grid.heights.iter().copied())
 }

@@ -1,13 +1,12 @@
 //! `optimize`: optimal gaits, with the names of the commands, each with its certificate and its file.
 
 use gait_optimizer::{
-    Arc, Bounds, Branch, Certificate, DisplacementProblem, EfficiencyProblem, OptimalGait,
-    SidewaysProblem, SpeedProblem, TurningProblem, displacement, efficiency, fastest, sideways,
-    turning,
+    Arc, Branch, Certificate, DisplacementProblem, EfficiencyProblem, OptimalGait, SidewaysProblem,
+    SpeedProblem, TurningProblem, displacement, efficiency, fastest, sideways, turning,
 };
+use operations::bounds::BoundsRequest;
 use serde::{Deserialize, Serialize};
 
-use super::bounds::BoundsAsked;
 use crate::calls::{Lab, Outcome, json, parsed};
 use crate::input::SwimmerText;
 
@@ -16,7 +15,7 @@ struct Asked {
     swimmer: SwimmerText,
     what: What,
     #[serde(default)]
-    bounds: BoundsAsked,
+    bounds: BoundsRequest,
     /// Largest rate for `speed` \[rad/s\]; default: that of the swimmer's servos.
     max_rate: Option<f64>,
 }
@@ -57,7 +56,7 @@ struct Found {
 pub(super) fn optimize(_: &mut Lab, bytes: &[u8]) -> Outcome {
     let asked: Asked = parsed(bytes)?;
     let file = asked.swimmer.read()?;
-    let (swimmer, bounds): (_, Bounds) = (file.swimmer, asked.bounds.into());
+    let (swimmer, bounds) = (file.swimmer, asked.bounds.of(&file));
     let of_branch = |branch| {
         let problem = EfficiencyProblem {
             bounds,

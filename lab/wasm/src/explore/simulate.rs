@@ -1,12 +1,13 @@
 //! `net`, `simulate`, `gait-file` and `tank`: motion of one cycle, its gait file, and the number of cycles up to a wall of a tank.
 
 use forecast::{NetMotion, Tank, shortest_period, until_wall};
+use operations::bounds::BoundsRequest;
 use operations::{Files, GaitSource};
 use serde::{Deserialize, Serialize};
 use swimmer_files::{AnyGait, Objective};
 use swimmer_model::{Gait, Model, Pose, Tolerance, crossing_share, swim};
 
-use super::bounds::{BoundsAsked, objective};
+use super::objective;
 use crate::calls::{Answer, Lab, Outcome, json, parsed};
 use crate::input::SwimmerText;
 
@@ -101,7 +102,7 @@ struct FileAsked {
     gait: GaitSource,
     objective: Option<String>,
     #[serde(default)]
-    bounds: BoundsAsked,
+    bounds: BoundsRequest,
 }
 
 /// Text of a gait file: unchanged for an optimal gait, otherwise with the swimmer of the page.
@@ -110,8 +111,8 @@ pub(super) fn gait_file(_: &mut Lab, bytes: &[u8]) -> Outcome {
     let swimmer = asked.swimmer.read()?;
     let mut file = asked.gait.file(Files::Unavailable)?;
     if file.objective == Objective::Unspecified {
-        file.objective = objective(asked.objective.as_deref())?.unwrap_or_default();
-        file.bounds = asked.bounds.into();
+        file.objective = objective::parse(asked.objective.as_deref())?.unwrap_or_default();
+        file.bounds = asked.bounds.of(&swimmer);
         file.swimmer_hash = Some(swimmer.hash());
         file.swimmer_name = Some(swimmer.name);
     }

@@ -1,0 +1,56 @@
+//! Bounds on the shapes of a gait, and those of the robot that shall play it.
+
+use serde::Deserialize;
+use swimmer_files::{Bounds, SwimmerFile};
+
+/// Bounds on shapes, with the names of the command's options.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct BoundsRequest {
+    /// Largest |φᵢ| \[rad\].
+    pub max_angle: Option<f64>,
+    /// Least angle of the leading joint of each quarter \[rad\].
+    pub min_angle: Option<f64>,
+    /// Each quarter stays in its sector, φ₂ ≥ |φ₁|.
+    pub sector: bool,
+    /// Links may not cross.
+    pub no_overlap: bool,
+    /// Least distance of the side links' centre lines \[m\]; above zero it implies `no_overlap`.
+    pub clearance: f64,
+    /// Also the bounds of the robot of the swimmer file, [`playable`].
+    pub playable: bool,
+}
+
+impl BoundsRequest {
+    /// The bounds for a swimmer.
+    pub fn of(&self, file: &SwimmerFile) -> Bounds {
+        let bounds = Bounds {
+            max_angle: self.max_angle,
+            min_angle: self.min_angle,
+            sector: self.sector,
+            no_overlap: self.no_overlap || self.clearance > 0.0,
+            clearance: self.clearance,
+        };
+        if self.playable {
+            playable(bounds, file)
+        } else {
+            bounds
+        }
+    }
+}
+
+/// Clearance of a search over the margin that the robot keeps, since the table and the servos' dead band cut corners.
+const CLEARANCE_FACTOR: f64 = 1.05;
+
+/// Tightens bounds to the largest angle of the file's servos and the clearance that the robot keeps.
+pub fn playable(bounds: Bounds, file: &SwimmerFile) -> Bounds {
+    let largest = file.servo.unwrap_or_default().max_angle;
+    let links = &file.swimmer.links;
+    let margin = f64::from(gait_player::clearance::MARGIN_TURN) * links.front.max(links.back);
+    Bounds {
+        max_angle: Some(bounds.max_angle.map_or(largest, |given| given.min(largest))),
+        no_overlap: true,
+        clearance: bounds.clearance.max(CLEARANCE_FACTOR * margin),
+        ..bounds
+    }
+}
