@@ -1,4 +1,4 @@
-//! One command for a caller in the same process: its JSON document, and what it would have said beside it.
+//! Runs one command for a caller in the same process: returns its JSON document and its messages.
 
 use std::ffi::OsString;
 
@@ -9,7 +9,7 @@ use crate::new_folder::with_places;
 use crate::output::{self, Output};
 use crate::{commands, negative_values_joined, parse, reason};
 
-/// What a command answered.
+/// Output of a command.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Answered {
     /// The JSON document that `--json` prints.
@@ -23,7 +23,7 @@ pub struct Answered {
 pub struct Refused {
     /// The sentence that standard error would show, without its `error: `.
     pub reason: String,
-    /// Whether the words, or a file that they name, cannot be used (exit status 2); else it was tried and failed.
+    /// `true` if the arguments, or a file that they name, are invalid (exit status 2); otherwise the command ran and failed.
     pub bad_input: bool,
     /// Warnings and notes that came before.
     pub notes: Vec<String>,
@@ -79,8 +79,8 @@ impl output::HandedOver {
     }
 }
 
-/// The long options of a command (`["optimize", "displacement"]`), without those of every command; none where there is no such
-/// command.
+/// The long options of a command (`["optimize", "displacement"]`), without those of every command. Returns `None` if there is no
+/// such command.
 ///
 /// ```
 /// let options = swimmer_command::options(&["optimize", "displacement"]);

@@ -45,7 +45,7 @@ fn above_zero_angle(angle: f64, what: &str) -> Result<f64, String> {
     }
 }
 
-/// What servos turn over what they are told, on the command line.
+/// Gain of the servos on the command line: actual over commanded angle.
 pub(crate) fn gain(text: &str) -> Result<f64, String> {
     match f64::from_str(text) {
         Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
@@ -61,9 +61,9 @@ pub(crate) fn length(text: &str) -> Result<f64, String> {
     }
 }
 
-/// The longest time that may be asked for, s: thirty years, which every clock here can count to.
+/// The longest time that may be given, s: thirty years, which every clock here can count to.
 const LONGEST_S: f64 = 1e9;
-/// The shortest and the longest cycle that a robot can be asked for, µs: one servo period, and what the wire carries.
+/// The shortest and the longest period of a robot's cycle, µs: one servo period, and the limit of the wire format.
 const PERIODS_US: [u32; 2] = [gait_player::TICK_US, u32::MAX];
 
 /// A time above zero on the command line, in seconds.
@@ -115,7 +115,7 @@ fn above_zero(text: &str) -> Result<f64, String> {
     }
 }
 
-/// What `--gait` names, still to be loaded.
+/// Gait of `--gait`, still to be loaded.
 pub(crate) fn gait(text: &str) -> Result<GaitSpec, String> {
     text.parse()
         .map_err(|error: swimmer_files::GaitSpecError| error.to_string())

@@ -15,7 +15,7 @@ pub(crate) struct WholeBounds {
     links: LinkBounds,
 }
 
-/// The same, and those that are told of a quarter of the gait.
+/// The same, and the bounds that are defined on a quarter of the gait.
 #[derive(Debug, Clone, Copy, clap::Args)]
 pub(crate) struct QuarterBounds {
     /// No joint may turn further than this, either way
@@ -93,7 +93,7 @@ impl Given for QuarterBounds {
 }
 
 impl WholeBounds {
-    /// Whether the gait shall be one that the robot plays.
+    /// `true` if the gait must be playable on the robot.
     pub(crate) fn playable(&self) -> bool {
         self.links.playable
     }
@@ -105,7 +105,7 @@ impl WholeBounds {
 }
 
 impl QuarterBounds {
-    /// Whether the gait shall be one that the robot plays.
+    /// `true` if the gait must be playable on the robot.
     pub(crate) fn playable(&self) -> bool {
         self.links.playable
     }

@@ -1,4 +1,4 @@
-//! What a command answers: the keys of its JSON document, and the lines that people read, each told where it is known.
+//! Output of a command: the keys of its JSON document, and the lines for people, added in the order of computation.
 
 use std::fmt;
 
@@ -10,7 +10,7 @@ use crate::quantity::Rows;
 /// An answer, or an object within one.
 #[derive(Default)]
 pub(crate) struct Document {
-    /// What people read before the rows.
+    /// Text before the rows.
     text: String,
     keys: Vec<(&'static str, Box<dyn erased_serde::Serialize>)>,
     rows: Rows,

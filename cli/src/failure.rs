@@ -15,7 +15,7 @@ pub(crate) enum Failure {
     /// Exit status 1.
     #[error("{0}")]
     Answered(String),
-    /// What was typed, or a file that was named, cannot be used. Exit status 2.
+    /// The arguments, or a named file, are invalid. Exit status 2.
     #[error("{0}")]
     BadInput(String),
 }
@@ -32,7 +32,7 @@ impl Failure {
         Error::failed(error).into()
     }
 
-    /// The same with what only an expert asks for: said with `--verbose`, else only that there is more.
+    /// [`Failure::Tried`] with details for experts: printed with `--verbose`; without it, only that there are details.
     pub(crate) fn tried_with_details(
         error: &dyn std::error::Error,
         details: Option<String>,

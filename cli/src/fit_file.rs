@@ -8,7 +8,7 @@ use serde::Deserialize;
 use crate::failure::{Failure, Outcome};
 use crate::output::aside;
 
-/// What is read of a fit.
+/// Part of a fit that is read.
 #[derive(Debug, Deserialize)]
 struct Fit {
     sphere_radius_m: f64,
@@ -18,7 +18,7 @@ struct Fit {
     further: Option<Further>,
 }
 
-/// What was fitted along.
+/// Nuisance parameters of the fit.
 #[derive(Debug, Deserialize)]
 struct Further {
     parameters: Vec<Parameter>,
@@ -34,8 +34,8 @@ struct Parameter {
 }
 
 impl Further {
-    /// All that it leaves open, where it tells of the servos' gain. What it finds of the gain belongs into the servo map; how well
-    /// that is known is left.
+    /// The uncertainty of the fit, if it includes the servos' gain. The estimate of the gain belongs into the servo map; its
+    /// uncertainty remains.
     fn uncertainty(&self) -> Option<Uncertainty> {
         let of = |name: &str| self.parameters.iter().find(|one| one.name == name);
         let (radius, chi, gain) = (of("r_s")?, of("chi")?, of("gain")?);

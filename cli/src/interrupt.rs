@@ -1,7 +1,7 @@
-//! Ctrl-C, or a polite kill: a value that a command looks at, so that what moves is stopped before the program ends. Where no
-//! command looks, the drafts of what it was to write are removed and the program ends.
+//! Ctrl-C or SIGTERM: a flag that a command polls, so that motion is stopped before the program ends. If no command polls it, the
+//! drafts of unfinished files are removed and the program ends.
 //!
-//! Who holds a robot takes Ctrl-Z for the same: a suspended program keeps its port and feeds no lease.
+//! A command that holds a robot treats Ctrl-Z the same: a suspended program keeps its port and feeds no lease.
 
 use std::process::exit;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -13,20 +13,20 @@ use crate::output::{Output, handed_over};
 
 /// Exit status of a program that a second Ctrl-C ends, as shells have it.
 const AT_ONCE: i32 = 130;
-/// What ends a command as it was meant to end.
+/// Name of the usual way to end a command.
 pub(crate) const CTRL_C: &str = "Ctrl-C";
 /// Exit status of a job that was tried and failed.
 const TRIED: i32 = 1;
 
-/// Whether the handler is installed; there can be only one.
+/// `true` if the handler is installed; there can be only one.
 static LISTENING: Mutex<bool> = Mutex::new(false);
-/// Who looks whether the program shall end.
+/// Flag that the handler sets; `None`: the handler ends the program itself.
 static IN_CHARGE: Mutex<Option<Interrupt>> = Mutex::new(None);
-/// How a program that ends in the middle says so.
+/// Output of the program, for a message of the handler.
 static OUTPUT: OnceLock<Output> = OnceLock::new();
 
-/// Whether the operator asked the program to end (Ctrl-C, a polite kill, and where it holds a robot Ctrl-Z). Clones share the
-/// answer.
+/// Set if the operator requested the end of the program (Ctrl-C, SIGTERM, and Ctrl-Z for a command that holds a robot). Clones
+/// share the flag.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Interrupt {
     ended: Arc<AtomicBool>,
@@ -69,12 +69,12 @@ impl Interrupt {
         Ok(interrupt)
     }
 
-    /// Whether Ctrl-C was pressed, or Ctrl-Z where that ends the program too.
+    /// `true` after Ctrl-C, or after Ctrl-Z if that ends the program too.
     pub(crate) fn requested(&self) -> bool {
         self.ended.load(Ordering::SeqCst) || self.suspended.load(Ordering::SeqCst)
     }
 
-    /// What was pressed, and what that means where it is not what the operator meant.
+    /// Key that was pressed, with an explanation if its effect is not the usual one.
     pub(crate) fn pressed(&self) -> &'static str {
         if self.suspended.load(Ordering::SeqCst) {
             "Ctrl-Z (a suspended program keeps no link, so it ends instead)"

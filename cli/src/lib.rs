@@ -1,9 +1,10 @@
 //! The `swimmer` command: parses, calls, prints, draws. No physics and no protocol live here.
 //!
-//! Two doors: [`run`] is the whole command, words in and exit status out; [`answer`] gives the JSON document of one command to a
-//! caller in the same process (the Python wheel), which keeps its own standard output, its own Ctrl-C and its own threads.
+//! Entry points: [`run`] is the whole command, arguments in and exit status out; [`answer`] gives the JSON document of one
+//! command to a caller in the same process (the Python wheel), which keeps its own standard output, its own Ctrl-C and its own
+//! threads.
 
-// What is printed goes through `output`: a reader that has gone away is no panic there.
+// All prints go through `output`, which does not panic if the reader has gone.
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
 mod answer;
@@ -97,7 +98,7 @@ fn negative_values_joined(words: impl Iterator<Item = OsString>) -> Vec<OsString
     joined
 }
 
-/// What was typed. Help is text even for scripts, but the word `help` takes no flags: there `--json` is passed over.
+/// Parses the arguments. Help is text even for scripts, but the word `help` takes no flags: there `--json` is ignored.
 fn parse(words: &[OsString]) -> Result<Arguments, clap::Error> {
     parsed(words.iter()).map_err(|error| {
         if error.kind() != ErrorKind::InvalidSubcommand || !words.iter().any(|word| word == "help")
@@ -133,7 +134,7 @@ fn bad_usage(error: &clap::Error, words: &[OsString]) -> u8 {
             }
         };
     }
-    // Nothing was parsed, so whether a script is asking can only be seen in the words themselves.
+    // Nothing was parsed, so only the arguments themselves show `--json`.
     if words.iter().any(|word| word == "--json") {
         output::write_all(&output::error_document(&reason(error)));
     }

@@ -14,7 +14,7 @@ use crate::interrupt::locked;
 use crate::new_file::may_be_written;
 use crate::output::aside;
 
-/// What a traced port shows its frames to.
+/// Callback of a traced port for its frames.
 pub(crate) type Sink = Box<dyn FnMut(TracedFrame<'_>) + Send>;
 
 /// Writes a link log while others talk, frame by frame under its own name. Dropped before [`Recorder::finish`], it ends all the
@@ -23,7 +23,7 @@ pub(crate) struct Recorder(Arc<Mutex<Recording>>);
 
 struct Recording {
     path: PathBuf,
-    /// Whether its place is told at its end.
+    /// `true` to print its path at the end.
     told: bool,
     writer: Option<LinkLogWriter>,
     frames: u64,
@@ -56,8 +56,8 @@ impl Recorder {
         self
     }
 
-    /// What the port shows its frames to. `epoch` is the time of day at the origin of the port's clock, since 1970; zero for a
-    /// port in virtual time.
+    /// Callback that records the frames of a port. `epoch` is the time of day at the origin of the port's clock, since 1970; zero
+    /// for a port in virtual time.
     pub(crate) fn sink(&self, epoch: Duration) -> Sink {
         let recording = Arc::clone(&self.0);
         Box::new(move |frame| locked(&recording).add(&frame, epoch))

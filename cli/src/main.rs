@@ -1,4 +1,4 @@
-//! The binary of the `swimmer` command; all that it does stands in the library beside it.
+//! Binary of the `swimmer` command; the code is in the library of this package.
 
 use std::process::ExitCode;
 

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::failure::{Failure, Outcome};
 
-/// Whether `--overwrite` was given: told once for all commands, as `--json` is.
+/// `true` if `--overwrite` was given: set once for all commands, as `--json` is.
 static OVERWRITE: AtomicBool = AtomicBool::new(false);
 
 /// From here on files that exist are replaced.
@@ -14,7 +14,7 @@ pub(crate) fn allow_overwriting() {
     OVERWRITE.store(true, Ordering::Relaxed);
 }
 
-/// Whether a file may be written there; asked before the work begins. A device or a pipe is written through.
+/// Checks that a file may be written there, before the work begins. A device or a pipe is written through.
 ///
 /// # Errors
 /// [`Failure::BadInput`].

@@ -14,7 +14,7 @@ static DRAFTS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 /// Each draft of this run with the place that it stood for: whoever reads an error knows only the place.
 static PLACES: Mutex<Vec<[String; 2]>> = Mutex::new(Vec::new());
 
-/// The text, with the places that were asked for instead of their drafts.
+/// The text, with the final paths instead of those of the drafts.
 pub(crate) fn with_places(text: &str) -> String {
     let places = locked(&PLACES);
     places.iter().fold(text.to_owned(), |text, [draft, place]| {
@@ -22,8 +22,8 @@ pub(crate) fn with_places(text: &str) -> String {
     })
 }
 
-/// A folder being filled beside the place where it will stand, or inside that place where an empty folder stands there
-/// already; dropped before [`Self::publish`], or interrupted, it vanishes.
+/// A folder being filled next to its final place, or inside that place if an empty folder exists there already; dropped before
+/// [`Self::publish`], or interrupted, it is removed.
 #[derive(Debug)]
 pub(crate) struct NewFolder {
     place: PathBuf,
@@ -99,20 +99,20 @@ impl NewFolder {
         Self::start(&free.unwrap_or_else(|| PathBuf::from(name)))
     }
 
-    /// Where the folder will stand.
+    /// Final path of the folder.
     pub(crate) fn place(&self) -> &Path {
         &self.place
     }
 
-    /// Where files are written until the folder is whole.
+    /// Path at which files are written until the folder is complete.
     pub(crate) fn draft(&self) -> &Path {
         &self.draft
     }
 
-    /// Puts the whole folder in its place.
+    /// Moves the complete folder to its final place.
     ///
     /// # Errors
-    /// [`Failure::Tried`] when it cannot be moved there; nothing is left beside it then.
+    /// [`Failure::Tried`] if it cannot be moved there; nothing is left behind then.
     pub(crate) fn publish(self) -> Outcome {
         // Held on the way: Ctrl-C comes before it or after it.
         let mut drafts = locked(&DRAFTS);
@@ -153,7 +153,7 @@ impl Drafts {
         Self(locked(&DRAFTS))
     }
 
-    /// Whether nothing is half-written.
+    /// `true` without a draft.
     pub(crate) fn none(&self) -> bool {
         self.0.is_empty()
     }
@@ -200,7 +200,7 @@ fn fill(place: &Path, draft: &Path) -> io::Result<()> {
     }
 }
 
-/// Whether a folder may be put here: nothing is there, or an empty folder.
+/// `true` if a folder may be put here: the path does not exist, or is an empty folder.
 fn is_free(place: &Path) -> io::Result<bool> {
     match fs::read_dir(place) {
         Ok(mut entries) => Ok(entries.next().is_none()),

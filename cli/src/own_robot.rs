@@ -1,4 +1,4 @@
-//! Whether the robot of a swimmer file can play a gait, in the words of `robot upload`.
+//! Check that the robot of a swimmer file can play a gait, in the words of `robot upload`.
 
 use forecast::forecast;
 use gait_optimizer::OptimalGait;
@@ -12,8 +12,8 @@ use crate::output::aside;
 
 pub(crate) use operations::robot_limits::PERIOD_S;
 
-/// The limit of each servo \[rad/s\]: what was told (the second is the first where only one is), and the robot's own where gaits
-/// shall be playable; none where neither was said.
+/// Rate limit of each servo \[rad/s\]: the given one (a single one is that of both), or the robot's own for playable gaits.
+/// Returns `None` without either.
 pub(crate) fn servo_rates(told: &[f64], playable: bool, file: &SwimmerFile) -> Option<[f64; 2]> {
     let own = if playable {
         file.servo.unwrap_or_default().max_rate
@@ -37,7 +37,7 @@ pub(crate) struct PlayedSpeed {
 }
 
 impl PlayedSpeed {
-    /// Of a gait that is designed for this period \[s\]; none where these servos cannot play it.
+    /// The check for a gait that is designed for this period \[s\]. Returns `None` if these servos cannot play it.
     pub(crate) fn new(
         file: &SwimmerFile,
         servo: ServoFile,

@@ -1,4 +1,4 @@
-//! What the ending of a file's name asks for: a figure, pixels, an animation, a table.
+//! Kind of an output file by the ending of its name: a figure, pixels, an animation, a table.
 
 use std::path::Path;
 
@@ -17,10 +17,10 @@ pub(crate) enum Kind {
 }
 
 impl Kind {
-    /// The kind that a name asks for, one of those that a command can write.
+    /// The kind that a name stands for, one of those that a command can write.
     ///
     /// # Errors
-    /// [`Failure::BadInput`] where its ending is none of theirs.
+    /// [`Failure::BadInput`] if its ending is not one of theirs.
     pub(crate) fn of(path: &Path, kinds: &[Self]) -> Outcome<Self> {
         let ending = path.extension().and_then(|ending| ending.to_str());
         let ending = ending.unwrap_or_default().to_ascii_lowercase();

@@ -15,7 +15,7 @@ use crate::own_robot::PERIOD_S;
 
 /// Most searches.
 const MOST_SEARCHES: usize = 5;
-/// What is added to the clearance, over what was missing.
+/// Addition to the clearance, over the missing clearance.
 const BEYOND: f64 = 1.1;
 
 /// Searches within bounds. If the gait shall be playable, searches again with more clearance as long as what was found comes too

@@ -1,4 +1,4 @@
-//! What is going on and how long it will take, for people at a terminal; silent everywhere else.
+//! Progress and remaining time, for people at a terminal; silent otherwise.
 
 use std::fmt::Write;
 use std::io::IsTerminal;
@@ -11,7 +11,7 @@ use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 use crate::interrupt::locked;
 use crate::output::for_scripts;
 
-/// A progress line on standard error; drawn only when that is a terminal and no script is asking.
+/// A progress line on standard error; shown only if that is a terminal and `--json` is not set.
 #[derive(Debug)]
 pub(crate) struct Progress(ProgressBar);
 
@@ -68,7 +68,7 @@ impl Progress {
     pub(crate) fn at_share(&self, share: f64) {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 0 to 1000; saturates
         let position = (1000.0 * share) as u64;
-        // Threads may tell in another order than they counted.
+        // Threads may report in another order than they counted.
         if position + 500 < self.0.position() {
             self.0.reset_elapsed();
             self.0.set_position(position);
@@ -89,7 +89,7 @@ impl Drop for Progress {
     }
 }
 
-/// How wide the terminal on standard error is; wide enough where nobody tells.
+/// Width of the terminal on standard error; a default if it is unknown.
 fn columns() -> u16 {
     #[cfg(unix)]
     let told = rustix::termios::tcgetwinsize(std::io::stderr()).map(|size| size.ws_col);
@@ -100,7 +100,7 @@ fn columns() -> u16 {
         .unwrap_or(ROOM_FOR_A_BAR)
 }
 
-/// How much longer, if what is left goes as fast as what is done.
+/// Remaining time, if the rest goes as fast as the work so far.
 fn left(state: &ProgressState, out: &mut dyn Write) {
     let share = f64::from(state.fraction());
     if share < TELLING {
@@ -126,7 +126,7 @@ pub(crate) struct Stages {
     begun: Instant,
 }
 
-/// How far the stages are; usual times in seconds.
+/// Progress over the stages; usual durations in seconds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Pace {
     /// Of all stages.
@@ -139,7 +139,8 @@ struct Pace {
 }
 
 impl Pace {
-    /// Seconds still to come, so many after the beginning of all: the rest takes as much longer than usual as what is done.
+    /// Remaining seconds, `elapsed` seconds after the beginning: the rest is slower than usual by the same factor as the work so
+    /// far.
     fn left(&self, elapsed: f64) -> f64 {
         let slower = if self.done > 0.0 {
             self.took / self.done
@@ -172,7 +173,7 @@ impl Stages {
         }
     }
 
-    /// The next one begins, which usually takes so many seconds.
+    /// Begins the next stage, which usually takes `usual` seconds.
     pub(crate) fn next(&mut self, what: &str, usual: f64) {
         let mut pace = locked(&self.pace);
         pace.done += pace.present;

@@ -68,7 +68,7 @@ impl Rows {
         self
     }
 
-    /// Whether there are none.
+    /// `true` without rows.
     pub(crate) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }

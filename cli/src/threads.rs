@@ -1,8 +1,8 @@
-//! How many threads a search may use: an answer never depends on it.
+//! Number of threads of a search; results never depend on it.
 
 use std::num::NonZero;
 
-/// As many as the machine runs at once; one where it does not tell.
+/// Number of threads that the machine runs at once; one if it is unknown.
 pub(crate) fn available() -> usize {
     std::thread::available_parallelism().map_or(1, NonZero::get)
 }

@@ -82,7 +82,7 @@ enum Aim {
 }
 
 impl Atlas {
-    /// Makes the atlas that was asked for.
+    /// Computes the atlas, lists it and writes its files.
     pub(crate) fn run(self, output: Output) -> Outcome {
         let file = load_swimmer(&self.swimmer)?;
         let begun = Instant::now();
@@ -171,13 +171,13 @@ impl Atlas {
         Ok(())
     }
 
-    /// The limit of each servo: what was told, and the robot's own where gaits shall be playable; none where nothing was told.
+    /// Rate limit of each servo: the given one, or the robot's own for playable gaits; `None` without either.
     fn rates(&self, file: &SwimmerFile) -> Option<[f64; 2]> {
         servo_rates(&self.max_rate, self.bounds.playable(), file)
     }
 }
 
-/// What people read of an atlas, and the keys of its gaits.
+/// Text of an atlas, and the keys of its gaits.
 fn listed(
     title: &str,
     found: &Found,
@@ -214,7 +214,7 @@ fn listed(
     Ok((answer, optima))
 }
 
-/// What is told of a gait: its keys, and its cells of the table.
+/// Keys of a gait, and its cells of the table.
 fn told(optimum: &Optimum, rates: Option<[f64; 2]>, seconds: f64) -> Outcome<(Document, String)> {
     let gait = &optimum.gait;
     let mut keys = Document::default();

@@ -85,7 +85,7 @@ impl Calibrate {
     }
 }
 
-/// What the stages take, seconds as measured on nine runs of eight cycles.
+/// Usual durations of the stages, seconds, as measured on nine runs of eight cycles.
 const FITTING: f64 = 4.4;
 const WEIGHING: f64 = 2.7;
 const ASSESSING: f64 = 6.3;
@@ -152,7 +152,7 @@ pub(crate) fn fit_campaign(path: &Path, level: f64) -> Outcome<FittedCampaign> {
     })
 }
 
-/// What the middle link of a single run is called in its file.
+/// Names of the middle link's points or body in the file of a single run.
 #[derive(Debug, Default)]
 pub(crate) struct MiddleLink {
     pub(crate) front: Option<PointName>,
@@ -214,7 +214,7 @@ pub(crate) fn single_run(
     })
 }
 
-/// What reader, poses and cycles of a run had to say, with its file's name.
+/// Warnings of reader, poses and cycles of a run, with its file's name.
 fn run_warnings(run: &RunResult, folder: &Path) -> Vec<String> {
     let file = run.file.strip_prefix(folder).unwrap_or(&run.file).display();
     run.warnings

@@ -110,7 +110,7 @@ impl Demo {
     }
 }
 
-/// Puts the lab page beside the report, where this checkout or release has it, and tells where it shows what was found.
+/// Puts the lab page next to the report, if this checkout or release has it. Returns the address that shows the results in it.
 fn lab_page(round: &Finished, draft: &Path) -> Outcome<Option<String>> {
     let Some(page) = lab::find() else {
         return Ok(None);
@@ -125,7 +125,7 @@ fn lab_page(round: &Finished, draft: &Path) -> Outcome<Option<String>> {
     Ok(Some(lab::beside(LAB, &round.fitted, bound, round.period_s)))
 }
 
-/// What is known at the start of the round.
+/// Inputs of the round.
 struct Round<'a> {
     truth: SwimmerFile,
     servo: ServoFile,
@@ -136,7 +136,7 @@ struct Round<'a> {
     progress: Progress,
 }
 
-/// What the round found.
+/// Results of the round.
 struct Finished {
     truth: SwimmerFile,
     start: SwimmerFile,

@@ -27,7 +27,7 @@ use crate::interrupt::Interrupt;
 use crate::new_file::may_be_written;
 use crate::output::{Output, aside, for_scripts};
 
-/// How often the listening thread looks whether it shall end.
+/// Interval at which the listening thread checks if it shall end.
 const LOOK: Duration = Duration::from_millis(20);
 
 /// Open the lab page: height map, gaits to drag, and the robot
@@ -159,14 +159,14 @@ fn listen(named: &str) -> Outcome<TcpListener> {
     Ok(listener)
 }
 
-/// The name in `--listen` where it is none of the addresses that speak for themselves.
+/// The host name in `--listen`. Returns `None` for an address.
 fn host_name(named: &str) -> Option<String> {
     let (host, _) = named.rsplit_once(':')?;
     let is_address = host.trim_matches(['[', ']']).parse::<IpAddr>().is_ok();
     (!is_address).then(|| host.to_owned())
 }
 
-/// What is typed into a browser.
+/// URL for a browser.
 fn address(listener: &TcpListener, gate: &Gate) -> Outcome<String> {
     let place = listener.local_addr().map_err(|error| {
         Failure::Tried(format!("cannot tell where the page is served: {error}"))

@@ -69,7 +69,7 @@ pub(crate) struct Merge {
 }
 
 impl Sweep {
-    /// Does the step that was asked for.
+    /// Runs the requested step.
     pub(crate) fn run(self, output: Output) -> Outcome {
         match self {
             Self::Plan(plan) => plan.run(output),

@@ -19,7 +19,7 @@ pub(crate) struct Swimmers {
 #[derive(Debug, clap::Args)]
 pub(crate) struct Gaits;
 
-/// What a preset's file does not have, to be filled in.
+/// Optional keys that a preset's file lacks, as comments.
 const OPTIONAL: &str = "
 # What follows is optional; take the # away where you know it.
 #[fluid]                      # for newtons and watts

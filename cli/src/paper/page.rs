@@ -41,7 +41,7 @@ pub(crate) fn printed(paper: Printed) -> String {
     }
 }
 
-/// Our number, with as many digits as mean something beside the paper's.
+/// Our number, with the digits that are significant for a comparison with the paper's.
 pub(crate) fn number(value: f64) -> String {
     if value == 0.0 || (1e-3..1e4).contains(&value.abs()) {
         format!("{value:.5}")
@@ -53,7 +53,7 @@ pub(crate) fn number(value: f64) -> String {
     }
 }
 
-/// How far they are apart.
+/// Difference of both numbers.
 pub(crate) fn deviation(row: &Row) -> String {
     match row.paper {
         Printed::Number(value) if value != 0.0 => crate::quantity::deviation(row.deviation),

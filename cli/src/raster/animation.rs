@@ -12,7 +12,7 @@ use crate::failure::Outcome;
 const COLORS: usize = 255;
 /// The place that means "as before".
 const AS_BEFORE: u8 = 255;
-/// One colour of so many is looked at, of all that are there, when the palette is made.
+/// One in this number of the colours is sampled when the palette is made.
 const SAMPLED: usize = 7;
 
 /// A GIF of these images, all of one size; each is shown for its time, in hundredths of a second.
@@ -52,7 +52,7 @@ pub(crate) fn gif(images: &[(Image, u16)]) -> Outcome<Vec<u8>> {
     Ok(file)
 }
 
-/// What turns one image into the next: the smallest rectangle that holds every change.
+/// Change from one image to the next: the smallest rectangle that holds every changed pixel.
 fn change(
     before: Option<&Image>,
     image: &Image,

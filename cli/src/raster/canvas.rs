@@ -11,7 +11,7 @@ pub(super) struct Ink {
     pub(super) opacity: f32,
 }
 
-/// What is painted on.
+/// Image that is painted on.
 pub(super) struct Canvas {
     image: Image,
 }
@@ -76,7 +76,7 @@ impl Canvas {
     }
 }
 
-/// Where the n-th pixel of a mask that starts there lies, if on the paper.
+/// Index of the n-th pixel of a mask that starts there. Returns `None` outside of the image.
 fn inside(start: i32, n: usize, size: usize) -> Option<usize> {
     let place = i64::from(start) + i64::try_from(n).ok()?;
     usize::try_from(place).ok().filter(|place| *place < size)

@@ -19,7 +19,7 @@ impl Letters {
         })
     }
 
-    /// How far a text of this size reaches.
+    /// Width of a text of this size.
     pub(super) fn width(&self, text: &str, size: f32) -> f32 {
         let scale = self.scale(size);
         self.glyphs(text)
@@ -37,7 +37,7 @@ impl Letters {
             y,
         };
         for glyph in self.glyphs(text) {
-            // A blank has no outline, and is none the worse for it.
+            // A blank has no outline, which is no error.
             let _ = self.face.outline_glyph(glyph, &mut pen);
             pen.x += self.advance(glyph) * scale;
         }

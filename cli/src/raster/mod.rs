@@ -22,7 +22,7 @@ pub(crate) struct Image {
     pub(crate) pixels: Vec<[u8; 3]>,
 }
 
-/// How many pixels of a PNG one of the page takes: sharp in print and on fine screens.
+/// Pixels of a PNG per pixel of the page: sharp in print and on fine screens.
 const PNG_SCALE: f64 = 2.0;
 
 /// A drawing as a PNG file, twice as fine as its size on the page.

@@ -9,10 +9,10 @@ use super::letters::{EX, Letters};
 use super::{Image, failed};
 use crate::failure::Outcome;
 
-/// A drawing painted with so many pixels for one of the page.
+/// A drawing painted with `scale` pixels per pixel of the page.
 ///
 /// # Errors
-/// [`Failure::Tried`] where it is not one of ours.
+/// [`Failure::Tried`] if it is not one of ours.
 pub(crate) fn painted(drawing: &str, scale: f64) -> Outcome<Image> {
     let document = Document::parse(drawing).map_err(|error| failed(&error))?;
     let root = document.root_element();
@@ -223,7 +223,7 @@ fn closed(points: &[(f32, f32)]) -> Vec<Command> {
     path
 }
 
-/// A circle of four cubics, as near to one as a pixel asks.
+/// A circle of four cubics, accurate to a fraction of a pixel.
 fn disc((x, y): (f32, f32), radius: f32) -> Vec<Command> {
     let handle = 0.552_284_8 * radius;
     let at = |dx: f32, dy: f32| Point::new(x + dx, y + dy);

@@ -1,4 +1,4 @@
-//! What an atlas leaves in its folder: its gaits and a picture of them.
+//! Folder of an atlas: its gaits and a picture of them.
 
 use std::fs;
 use std::path::PathBuf;
@@ -10,8 +10,8 @@ use crate::document::Document;
 use crate::failure::{Failure, Outcome};
 use crate::new_folder::NewFolder;
 
-/// Where there is a folder: puts the gaits into it, each of whose keys then say where, and a picture of them with the value of each,
-/// which the answer's lines name. Gives where the picture will lie.
+/// Writes the gaits and a picture of them into the folder, if there is one. Adds the path of each gait to its keys and that of
+/// the picture to the text. Returns the path of the picture.
 pub(super) fn fill<'a>(
     folder: Option<NewFolder>,
     (name, title): (&str, &str),

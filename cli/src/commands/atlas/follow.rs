@@ -16,7 +16,7 @@ use crate::progress::Progress;
 
 use answer::followed;
 
-/// What to follow gaits in, from where to where.
+/// Parameter of a continuation, with its range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Way {
     parameter: Parameter,
@@ -24,7 +24,7 @@ pub(super) struct Way {
     to: f64,
 }
 
-/// How many gaits of an atlas are followed.
+/// Number of gaits of an atlas that are continued.
 const MOST_GAITS: usize = 2;
 
 /// Reads `max-angle=2.8..2.0` and the like.
@@ -60,7 +60,7 @@ pub(super) enum Named {
     Large,
 }
 
-/// What to follow, but for where it starts.
+/// Inputs of a continuation, except for the gait that it starts from.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Order {
     pub(super) swimmer: Swimmer<f64>,

@@ -6,7 +6,7 @@ use crate::failure::Outcome;
 use crate::report::chart::{Chart, Point, Series};
 use crate::report::style::CURVES;
 
-/// Gaits that are drawn; the table has all. More curves than colours cannot be told apart.
+/// Largest number of gaits in the picture; the table has all. More curves than colours cannot be distinguished.
 const MOST: usize = 2 * CURVES.len();
 /// Width and height, pixels of the page.
 const SIZE: (i32, i32) = (620, 580);

@@ -1,4 +1,4 @@
-//! What `swimmer calibrate` answers: JSON keys and lines for people.
+//! Output of `swimmer calibrate`: JSON keys and lines for people.
 
 use std::fmt;
 use std::path::Path;
@@ -13,12 +13,12 @@ use super::further::{FurtherAnswers, Shown};
 use super::joints::{JointsAnswer, RunJoints};
 use crate::quantity::{self, Rows, Table};
 
-/// The cycles of one run, and what they brought. Deviations of a single cycle are not numbers; JSON has null.
+/// The cycles of one run and their means. The deviation of a single cycle is NaN, in JSON null.
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct RunAnswer {
     pub(crate) file: String,
     pub(crate) gait: String,
-    /// Null where results were told without it.
+    /// Null for reported results without it.
     pub(crate) cycles: Option<usize>,
     pub(crate) x_m: f64,
     pub(crate) x_sd_m: f64,
@@ -31,26 +31,26 @@ pub(crate) struct RunAnswer {
     pub(crate) period_s: f64,
     #[serde(flatten)]
     spreads: Spreads,
-    /// How front and back were told apart: label, place or travel; null where there is no track.
+    /// Rule that distinguished front and back: label, place or travel; null without a track.
     front_rule: Option<&'static str>,
-    /// How the starts of cycles were found: heading, flash, log or log-and-heading; told where there is no track.
+    /// Source of the starts of cycles: heading, flash, log or log-and-heading; `told` without a track.
     phase: &'static str,
     left_out: Vec<LeftOutAnswer>,
-    /// Its joint angles, where reflectors on the side links showed them.
+    /// Its joint angles, if reflectors on the side links measured them.
     #[serde(skip_serializing_if = "Option::is_none")]
     joints: Option<RunJoints>,
-    /// When the names of both reflectors were exchanged, and set right.
+    /// Times at which the names of both reflectors were exchanged, and corrected.
     swaps: Vec<Stretch>,
-    /// When there were points that are no reflector.
+    /// Times of points that are not reflectors.
     ghosts: Vec<Stretch>,
-    /// What is noteworthy about its track and its cycles.
+    /// Remarks on its track and its cycles.
     pub(crate) diagnoses: Vec<String>,
     pub(crate) samples: Samples,
     #[serde(skip)]
     pub(crate) front_words: String,
 }
 
-/// Standard deviations, standard errors and lag-1 correlations of a run's cycles, where they are not told already.
+/// Standard deviations, standard errors and lag-1 correlations of a run's cycles, except for those in [`RunAnswer`].
 #[derive(Debug, Clone, Serialize)]
 struct Spreads {
     x_se_m: f64,
@@ -74,14 +74,14 @@ pub(crate) struct LeftOutAnswer {
     pub(crate) reason: String,
 }
 
-/// What became of a track's frames.
+/// Counts of a track's frames by their use.
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct Samples {
     pub(crate) frames: usize,
     pub(crate) seen: usize,
-    /// Seen, but right beside a gap too long to be filled: drawn, not used.
+    /// Seen, but next to a gap too long to be filled: drawn, not used.
     pub(crate) tails: usize,
-    /// Seen right beside a filled gap, and replaced by its cubic.
+    /// Seen next to a filled gap, and replaced by its cubic.
     pub(crate) smoothed: usize,
     /// In short gaps.
     pub(crate) filled: usize,
@@ -98,22 +98,22 @@ pub(crate) struct FitAnswer {
     /// Between both.
     pub(crate) correlation: f64,
     pub(crate) c_t_form: String,
-    /// The estimate beside the paper's: each value weighed by its own variance.
+    /// The estimate by likelihood: each value weighed by its own variance.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) likelihood: Option<Likelihood>,
-    /// What the servos made of their commands, where the joint angles were measured: the mean of the runs.
+    /// Response of the servos to their commands, if the joint angles were measured: the mean of the runs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) joints: Option<JointsAnswer>,
-    /// What to know about the runs and the fit.
+    /// Warnings about the runs and the fit.
     pub(crate) warnings: Vec<String>,
-    /// Whether it can be used, and why.
+    /// Assessment of the result, with reasons.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub(crate) assessment: Option<AssessmentAnswer>,
     #[serde(flatten)]
     pub(crate) beyond: FurtherAnswers,
 }
 
-/// Only the cycles: what a single run can tell.
+/// Output for a single run: its cycles only.
 #[derive(Debug, Serialize)]
 pub(super) struct RunsAnswer {
     pub(super) runs: Vec<RunAnswer>,
@@ -128,7 +128,7 @@ impl fmt::Display for RunsAnswer {
     }
 }
 
-/// How each run's front and phase were found, and which of its whole cycles do not count.
+/// Front rule and phase of each run, and its whole cycles that were left out.
 fn left_out(f: &mut fmt::Formatter<'_>, runs: &[RunAnswer]) -> fmt::Result {
     for run in runs {
         if run.front_rule.is_none() {
@@ -264,7 +264,7 @@ fn with_deviation([mean, deviation]: [f64; 2], written: fn(f64) -> String) -> St
 }
 
 impl RunAnswer {
-    /// Paths are told relative to the campaign's folder, as the campaign tells them.
+    /// Paths are relative to the campaign's folder, as in the campaign.
     pub(super) fn new(run: &RunResult, gait: &GaitSpec, folder: &Path) -> Self {
         let cycles = &run.cycles;
         let relative = |path: &Path| path.strip_prefix(folder).unwrap_or(path).to_owned();

@@ -1,4 +1,4 @@
-//! Whether the answer can be used: the verdict with its reasons, and the tables they come from.
+//! Assessment of a calibration: the verdict with its reasons, and the tables they come from.
 
 use std::fmt::Write as _;
 
@@ -9,7 +9,7 @@ use super::answer::with_intervals;
 use super::further::{Shown, readable};
 use crate::quantity::{self, Table};
 
-/// What `swimmer calibrate` says of its own answer.
+/// Assessment in the output of `swimmer calibrate`.
 #[derive(Debug, Clone, Serialize)]
 #[serde(transparent)]
 pub(crate) struct AssessmentAnswer(pub(crate) AssessmentDocument);
@@ -122,7 +122,7 @@ impl AssessmentAnswer {
             "drift along, across",
             "lengths",
         ]);
-        // A run that was told may lack one.
+        // Reported results may lack one.
         let there = |value: f64, written: String| {
             if value.is_nan() {
                 "–".to_owned()

@@ -1,4 +1,4 @@
-//! What `-o` leaves behind: the report, the fitted swimmer with the hashes of its inputs, every intermediate.
+//! Folder of `-o`: the report, the fitted swimmer with the hashes of its inputs, every intermediate.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! What is computed only when it is asked for: further parameters, and what to measure next.
+//! Optional computations: nuisance parameters, and proposals for further runs.
 
 use std::fmt;
 
@@ -26,7 +26,7 @@ pub(super) struct BeyondFit {
     advise: bool,
 }
 
-/// What they take, seconds as measured on nine runs.
+/// Usual durations, seconds, as measured on nine runs.
 const FITTING: f64 = 1.6;
 const ADVISING: f64 = 0.9;
 
@@ -44,7 +44,7 @@ impl BeyondFit {
         }
     }
 
-    /// What [`Self::answer`] takes, seconds as measured on nine runs.
+    /// Usual duration of [`Self::answer`], seconds, as measured on nine runs.
     pub(super) fn weight(&self) -> f64 {
         let further = if self.fit_also.is_empty() {
             0.0
@@ -54,7 +54,7 @@ impl BeyondFit {
         further + if self.advise { ADVISING } else { 0.0 }
     }
 
-    /// Computes what was asked.
+    /// Computes the requested options.
     pub(super) fn answer(
         &self,
         campaign: &Campaign,

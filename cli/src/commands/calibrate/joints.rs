@@ -20,7 +20,7 @@ pub(crate) struct RunJoints {
     seen: [f64; 2],
     /// Of samples about the mean course, each \[rad\].
     scatter_rad: [f64; 2],
-    /// What the servos made of the command; null where the gait does not tell.
+    /// Response of the servos to the command; null if the gait does not determine it.
     servos: Option<JointsAnswer>,
 }
 
@@ -46,7 +46,7 @@ impl JointsAnswer {
         found.servos().map(Into::into)
     }
 
-    /// As a table for people.
+    /// Table for people.
     pub(crate) fn shown(&self) -> Shown {
         let mut table = Table::new(["measured joint", "gain", "dead band", "offset", "lag"]);
         let with = |measured: Measured, unit: f64, digits: usize, sign: &str| {

@@ -10,7 +10,7 @@ use crate::quantity;
 /// An amplitude that fits the sway less well than this belongs to another gait, as a share: of a single run of a swimmer that is
 /// only taken to be this one.
 const OFF_ALONE: f64 = 0.1;
-/// What speaks against the gaits that a campaign names, run by run.
+/// Evidence against the gaits that a campaign names, run by run.
 pub(super) fn of_campaign(
     campaign: &Campaign,
     data: &CampaignData,
@@ -33,7 +33,7 @@ pub(super) fn of_campaign(
     said
 }
 
-/// What speaks against the gait that a single run is said to have swum.
+/// Evidence against the gait that a single run is said to have swum.
 pub(super) fn of_single(
     run: &RunResult,
     gait: &GaitSpec,

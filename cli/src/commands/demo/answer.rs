@@ -1,4 +1,4 @@
-//! What the demo answers.
+//! Output of the demo.
 
 use std::fmt;
 use std::path::Path;
@@ -10,18 +10,18 @@ use super::{BEST, CYCLES, Finished, REPORT};
 use crate::commands::calibrate::FitAnswer;
 use crate::quantity::{self, Table};
 
-/// What the round found, and where it lies.
+/// Results of the round, and their files.
 #[derive(Debug, Serialize)]
 pub(super) struct DemoAnswer {
     gait: String,
     played_cycles: u32,
     displacement_predicted_m: f64,
     displacement_tracked_m: f64,
-    /// The fastest gait beside the farthest, both at the servos' full rate.
+    /// The fastest and the farthest gait, both at the servos' full rate.
     race: Race,
     fit: FitAnswer,
     report: String,
-    /// What the fit and the prediction are held against.
+    /// True parameters, for comparison with fit and prediction.
     truth: Truth,
     #[serde(skip)]
     tracked_sd_m: f64,

@@ -1,4 +1,4 @@
-//! What the report shows of a round, from what the round found.
+//! Figures of the report from the results of a round.
 
 use calibrate::{CycleError, RunResult, joint_path, predict};
 use swimmer_files::{AnyGait, GaitSpec, SwimmerFile};
@@ -16,7 +16,7 @@ const CURVE: std::ops::RangeInclusive<u32> = 20..=120;
 const CURVE_STEP: usize = 2;
 /// The circle whose track is shown, degrees: the paper's example.
 const SHOWN: f64 = 70.0;
-/// Every so many of the 512 uploaded knots is drawn.
+/// One in this number of the 512 uploaded knots is drawn.
 const KNOTS_DRAWN: u32 = 64;
 /// Points of an arc that are drawn.
 const ARC_POINTS: u32 = 120;

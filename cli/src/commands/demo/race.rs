@@ -1,4 +1,4 @@
-//! The fastest gait beside the farthest, each as fast as the servos allow.
+//! The fastest and the farthest gait, each as fast as the servos allow.
 
 use std::time::Duration;
 

@@ -11,11 +11,11 @@ use crate::report::style::{
     finished, head, legend, letters, number, said, stroke,
 };
 
-/// What the figure shows.
+/// Contents of the figure.
 #[derive(Debug)]
 pub(crate) struct Figure<'a> {
     pub(crate) title: String,
-    /// The height with its unit, beside the colour bar.
+    /// The height with its unit, next to the colour bar.
     pub(crate) quantity: &'static str,
     pub(crate) map: &'a HeightMap,
     pub(crate) row: Row,

@@ -23,7 +23,7 @@ struct Known {
     pages: usize,
 }
 
-/// What a caller became.
+/// Admission of a caller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Place {
     /// A page.

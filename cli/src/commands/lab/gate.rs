@@ -1,5 +1,5 @@
-//! Who may come in: the one who has the token, from a page that this server gave or that lies on a disk, asking for this server
-//! by its own name.
+//! Access control: a request needs the token, an origin that is this server's page or a page on a disk, and a `Host` that names
+//! this server.
 //!
 //! Any page in any tab may send requests to this machine. So the name in `Host` must be an address of ours (another is a name
 //! rebound to us), `Origin` must be the page that we serve or `null` (a page opened from disk), and the token must be right; it
@@ -13,9 +13,9 @@ use tungstenite::handshake::derive_accept_key;
 
 use crate::failure::{Failure, Outcome};
 
-/// Where the page opens its WebSocket.
+/// Path of the page's WebSocket.
 const LINK: &str = "/link";
-/// The protocol spoken there; the token stands beside it.
+/// Protocol of the WebSocket; the token follows it in the list of protocols.
 pub(super) const PROTOCOL: &str = "swimmer";
 /// Headers that browsers send; more are refused.
 const MOST_HEADERS: usize = 64;
@@ -51,7 +51,7 @@ impl fmt::Display for Token {
     }
 }
 
-/// What a request that is let in asks for.
+/// Resource that an accepted request asks for.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Wanted {
     /// The page, or only its head.
@@ -71,12 +71,12 @@ const fn refusal(status: &'static str, reason: &'static str) -> Refusal {
     Refusal { status, reason }
 }
 
-/// What requests are judged by.
+/// Rules for requests.
 pub(super) struct Gate {
     pub(super) token: Token,
-    /// The name that `--listen` gave this server, beside its addresses.
+    /// The name that `--listen` gave this server, in addition to its addresses.
     pub(super) name: Option<String>,
-    /// Whether there is a robot to drive.
+    /// `true` if there is a robot to drive.
     pub(super) has_robot: bool,
 }
 
@@ -159,7 +159,7 @@ impl Gate {
         }
     }
 
-    /// Whether a `Host` names this server where it was reached.
+    /// `true` if a `Host` names this server at the address that was reached.
     fn is_ours(&self, host: &str, here: SocketAddr) -> bool {
         let (name, port) = match host.rsplit_once(':') {
             Some((name, port)) if !port.ends_with(']') => (name, port.parse().ok()),

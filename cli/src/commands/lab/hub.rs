@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::commands::robot::{Heard, LentPort};
 
-/// Longest wait for bytes of the robot in one turn: so long a stop of a page waits at most.
+/// Longest wait for bytes of the robot in one turn, and so the longest delay of a stop from a page.
 const TURN: Duration = Duration::from_millis(2);
 /// Most messages of one kind that are taken in a turn.
 const MOST_A_TURN: usize = 64;
@@ -76,11 +76,11 @@ pub(super) enum Ask {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "told")]
 pub(super) enum Says {
-    /// Who drives: this page, another one, or nobody.
+    /// Driver: this page, another one, or nobody.
     Wheel {
         /// This page drives.
         yours: bool,
-        /// Nobody does: ask for it.
+        /// Nobody drives: a page may request the wheel.
         free: bool,
     },
     /// The robot's port.
@@ -148,7 +148,7 @@ impl ToHub {
         }
     }
 
-    /// Sends frames if the page drives. What does not fit is lost, as on any link.
+    /// Sends frames if the page drives. Frames that do not fit into the inbox are lost, as on any link.
     pub(super) fn frames(&self, id: PageId, frames: Vec<u8>) -> Result<(), Ended> {
         if self.driver.load(Ordering::Relaxed) != id {
             return Ok(());
@@ -169,7 +169,7 @@ impl ToHub {
 struct Pages {
     known: BTreeMap<PageId, SyncSender<ToPage>>,
     driver: Option<PageId>,
-    /// The driver, for who sends frames; 0 if there is none.
+    /// The driver, for threads that send frames; 0 without a driver.
     shared: Arc<AtomicU64>,
 }
 

@@ -1,4 +1,4 @@
-//! Where the page lies.
+//! File of the lab page.
 
 use std::env;
 use std::fs;
@@ -12,17 +12,17 @@ use crate::failure::{Failure, Outcome};
 use crate::output::aside;
 
 const NAME: &str = "swimmer-lab.html";
-/// What every lab page says of itself in its head.
+/// Mark in the head of every lab page.
 const MARK: &str = "<meta name=\"swimmer-lab\" content=\"";
 
-/// It says so within so many bytes.
+/// The mark is within this many bytes.
 const HEAD: usize = 4096;
 
-/// Reads the page: the one that was named, the one beside this program (a release's), or the one that this checkout's
-/// `cargo xtask lab` made.
+/// Reads the page: the named one, the one next to this program (a release's), or the one that this checkout's `cargo xtask lab`
+/// made.
 ///
 /// # Errors
-/// [`Failure::BadInput`] where there is none, with how to make one.
+/// [`Failure::BadInput`] without a page, with the way to make one.
 pub(super) fn load(named: Option<&Path>) -> Outcome<Vec<u8>> {
     let path = named.map(Path::to_path_buf).or_else(find).ok_or_else(|| {
         Failure::BadInput(format!(

@@ -30,7 +30,7 @@ const MOST_UNSENT: usize = 256 << 10;
 const MOST_A_TURN: usize = 64;
 /// Time between two pings.
 const PING_EVERY: Duration = Duration::from_millis(500);
-/// A page without a sign of life for so long is frozen: it loses the wheel within two seconds.
+/// A page is frozen after this time without a sign of life: it loses the wheel within two seconds.
 const FROZEN: Duration = Duration::from_millis(1250);
 
 /// State that all connections share.
@@ -44,7 +44,7 @@ impl Server {
     /// Serves a connection to its end.
     ///
     /// # Errors
-    /// The network's: nobody is left to be told.
+    /// Errors of the network; the page is gone then.
     pub(super) fn serve(&self, mut stream: TcpStream, mut caller: Caller) -> io::Result<()> {
         stream.set_nodelay(true)?;
         stream.set_write_timeout(Some(PATIENCE))?;

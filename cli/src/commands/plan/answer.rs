@@ -1,4 +1,4 @@
-//! What `swimmer plan` answers.
+//! Output of `swimmer plan`.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! The playlist of a plan: which gaits to play, how often and how fast, with the gait files beside it.
+//! The playlist of a plan: gaits with their cycles and periods, and the gait files in the same folder.
 
 use std::path::Path;
 

@@ -7,7 +7,7 @@ use crate::arguments::seconds;
 use crate::quantity::{self, Rows};
 use forecast::Servos;
 
-/// How the robot plays.
+/// Settings of the play on the robot.
 #[derive(Debug, clap::Args)]
 pub(super) struct Playing {
     /// Also foretell a cycle on the robot, loss by loss: table, ticks, pulses, and the servos of the swimmer file (or the

@@ -44,7 +44,7 @@ pub(crate) struct Map {
     export: Option<PathBuf>,
 }
 
-/// What is drawn.
+/// Quantity of the map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum Drawn {
     /// X/L of the best gait
@@ -75,7 +75,7 @@ struct Answer {
     designs: usize,
     without_gait: usize,
     uncertified: usize,
-    /// How many kinds of gait, by their arcs.
+    /// Number of kinds of gait, by their arcs.
     kinds: usize,
     folds: usize,
     pareto: usize,
@@ -190,7 +190,7 @@ impl Answer {
     }
 }
 
-/// Doubts that people are told one by one.
+/// Largest number of doubts that are listed singly.
 const TOLD: usize = 12;
 
 impl fmt::Display for Answer {

@@ -1,4 +1,4 @@
-//! A map as a picture: coloured cells, a scale beside them, fold lines; or the Pareto set.
+//! Picture of a map: coloured cells with a scale, fold lines; or the Pareto set.
 
 use plotters::prelude::{ColorMap as _, RGBColor, ViridisRGB};
 use sweep::{Map, MapAxis};

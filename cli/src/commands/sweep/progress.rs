@@ -1,4 +1,4 @@
-//! What a run, a look and a merge answer.
+//! Outputs of a run, a status and a merge.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -11,7 +11,7 @@ use super::shown;
 use crate::failure::Outcome;
 use crate::quantity::Rows;
 
-/// What was run.
+/// Output of `swimmer sweep run`.
 #[derive(Debug, Serialize)]
 pub(super) struct RunAnswer {
     pub(super) plan: String,
@@ -38,7 +38,7 @@ impl fmt::Display for RunAnswer {
     }
 }
 
-/// How far all shards are.
+/// Progress of all shards.
 #[derive(Debug, Serialize)]
 #[serde(transparent)]
 pub(super) struct StatusAnswer(pub(super) Status);
@@ -74,7 +74,7 @@ impl fmt::Display for StatusAnswer {
     }
 }
 
-/// What was merged.
+/// Output of `swimmer sweep merge`.
 #[derive(Debug, Serialize)]
 pub(super) struct MergeAnswer {
     plan: String,

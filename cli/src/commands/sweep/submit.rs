@@ -58,7 +58,7 @@ struct Answer {
     cores: u64,
     minutes: u64,
     script: PathBuf,
-    /// Of the job array; none where it was not submitted.
+    /// Number of the job array; null if it was not submitted.
     job: Option<String>,
 }
 

@@ -1,4 +1,4 @@
-//! What is told of gaits that were followed.
+//! Output of a continuation.
 
 use gait_optimizer::{ArcKind, Continuation, EventKind, Fold, Parameter, Point};
 
@@ -71,7 +71,7 @@ fn keys(point: &Point) -> Document {
     }
 }
 
-/// What happened, in words.
+/// Event in words.
 fn happened(kind: &EventKind) -> String {
     let arcs = |arcs: &[ArcKind]| {
         let words: Vec<_> = arcs.iter().map(|kind| kind.word()).collect();
