@@ -123,7 +123,7 @@ struct Upload {
     dry_run: bool,
 }
 
-/// Whose gait it is.
+/// Swimmer that the gait is for.
 #[derive(Debug, clap::Args)]
 struct Owner {
     /// The swimmer that this robot is, where no preset describes it: a swimmer file
@@ -235,7 +235,7 @@ struct Replay {
 }
 
 impl Robot {
-    /// Does what was asked of the robot.
+    /// Runs the subcommand.
     pub(crate) fn run(self, output: Output) -> Outcome {
         let access = &self.access;
         match &self.action {

@@ -1,4 +1,4 @@
-//! One chart in the house style, as inline SVG: thin axes, few ticks, the paper's colours.
+//! One chart in the common style, as inline SVG: thin axes, few ticks, the paper's colours.
 
 use std::ops::Range;
 
@@ -11,11 +11,11 @@ use super::style::{
 pub(crate) use super::style::{INK, Point};
 use crate::failure::{Failure, Outcome};
 
-/// What was measured.
+/// Colour of measurements.
 pub(crate) const MEASURED: RGBColor = RGBColor(0x1f, 0x6f, 0xb2);
 /// The slender model without a sphere.
 pub(crate) const SLENDER: RGBColor = RGBColor(0x3a, 0x9d, 0x5d);
-/// What the fitted model predicts.
+/// Colour of the fitted model's predictions.
 pub(crate) const PREDICTED: RGBColor = RGBColor(0xd3, 0x5b, 0x1e);
 /// Arcs on a bound, as a broad band under what was played.
 pub(crate) const BOUND: RGBColor = RGBColor(0xd8, 0xb9, 0xe6);
@@ -57,7 +57,7 @@ pub(crate) enum Series {
     Arrows { points: Vec<Point>, color: RGBColor },
     /// Names under 1, 2, 3 … of the horizontal axis instead of numbers.
     Names(Vec<String>),
-    /// A short word beside a point.
+    /// A short label next to a point.
     Word {
         at: Point,
         text: String,
@@ -65,10 +65,10 @@ pub(crate) enum Series {
     },
 }
 
-/// What a chart shows and between which axes.
+/// Contents and axes of a chart.
 #[derive(Debug, Clone)]
 pub(crate) struct Chart {
-    /// On top; empty where the page tells it.
+    /// Title; empty if the page has it.
     pub(crate) title: String,
     /// Under the horizontal axis, with its unit.
     pub(crate) x_label: String,
@@ -80,7 +80,7 @@ pub(crate) struct Chart {
     pub(crate) equal_axes: bool,
     /// Drawn in this order.
     pub(crate) series: Vec<Series>,
-    /// Names of curves, told below; for a figure that stands without a caption.
+    /// Names of curves, listed below; for a figure without a caption.
     pub(crate) legend: Vec<(String, RGBColor)>,
 }
 
@@ -106,7 +106,7 @@ impl Chart {
         Ok(finished(&text, size))
     }
 
-    /// Room for the numbers beside the y axis and its name \[px\].
+    /// Width of the numbers at the y axis and of its name \[px\].
     fn label_width(y_range: &Range<f64>) -> i32 {
         let format = label_format(y_range, 6);
         let longest = [y_range.start, y_range.end].map(|value| format(&value).chars().count());
@@ -246,7 +246,7 @@ impl Chart {
         if self.title.is_empty() { 10 } else { 44 }
     }
 
-    /// What stands under 1, 2, 3 …, where the horizontal axis is no scale.
+    /// Labels at 1, 2, 3 …, if the horizontal axis is not a scale.
     fn names(&self) -> Option<&[String]> {
         self.series.iter().find_map(|series| match series {
             Series::Names(names) => Some(names.as_slice()),
@@ -264,7 +264,7 @@ impl Chart {
         )
     }
 
-    /// The axes' ranges: all points with some air, and with equal units where asked.
+    /// Ranges of the axes: all points with a margin, and equal units if requested.
     fn ranges(&self, inside: (i32, i32)) -> (Range<f64>, Range<f64>) {
         let points: Vec<Point> = self.series.iter().flat_map(Series::extent).collect();
         let mut x = with_air(points.iter().map(|point| point.0));
@@ -321,7 +321,7 @@ fn widened(range: &Range<f64>, length: f64) -> Range<f64> {
     middle - 0.5 * length..middle + 0.5 * length
 }
 
-/// Just enough decimals to tell neighbouring ticks apart.
+/// Fewest decimals that distinguish neighbouring ticks.
 fn label_format(range: &Range<f64>, ticks: u8) -> impl Fn(&f64) -> String {
     let step = (range.end - range.start) / f64::from(ticks);
     let decimals = if step > 0.0 {

@@ -1,4 +1,4 @@
-//! A drawing made of strokes in the house style, for what is no chart: a body on its way, a body in motion.
+//! A drawing made of strokes in the common style, for figures without axes: a body on its way, a body in motion.
 
 use std::fmt::Write;
 
@@ -16,7 +16,7 @@ pub(crate) struct Drawing {
 /// A colour and how much of it covers what lies below, 0 to 1.
 pub(crate) type Ink = (RGBColor, f64);
 
-/// Where a text starts, or what of it lies at its place.
+/// Anchor of a text: start, middle or end at its place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Anchor {
     /// Its left end.

@@ -78,7 +78,7 @@ fn over_amplitude(
             .map(|circle| (circle.amplitude.to_degrees(), model(circle) * unit))
             .collect()
     };
-    // A run whose results were told may lack one.
+    // Reported results may lack one.
     let there = circles
         .iter()
         .filter(|circle| measured(circle).0.is_finite());

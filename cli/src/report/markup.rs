@@ -1,4 +1,4 @@
-//! What templates of pages do to a text: `{{ markup::minus(text) }}`.
+//! Text filters of the page templates: `{{ markup::minus(text) }}`.
 
 use askama::filters::{Html, Safe, escape};
 

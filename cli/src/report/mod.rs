@@ -20,7 +20,7 @@ pub(crate) struct Report {
     pub(crate) swimmer: String,
     /// Seed of cameras and link.
     pub(crate) seed: u64,
-    /// How long a cycle took, in seconds.
+    /// Duration of a cycle, in seconds.
     pub(crate) period_s: f64,
     /// Sphere radius and χ.
     pub(crate) parameters: Vec<Parameter>,
@@ -28,7 +28,7 @@ pub(crate) struct Report {
     pub(crate) level: f64,
     /// The paper's weighted error of the fit.
     pub(crate) rmse: f64,
-    /// Which form of tangential drag the fit rests on.
+    /// Form of tangential drag that the fit assumes.
     pub(crate) c_t_form: String,
     /// The circles that the fit saw.
     pub(crate) circles: Vec<MeasuredCircle>,
@@ -55,9 +55,9 @@ pub(crate) struct Report {
     pub(crate) fastest: (f64, f64),
     /// The bound on the joints under which the robot took the gait, and the one of its servos, rad.
     pub(crate) bounds: (f64, f64),
-    /// Where the lab page shows the fitted swimmer and its gait, if the page is there.
+    /// Address at which the lab page shows the fitted swimmer and its gait, if the page exists.
     pub(crate) lab: Option<String>,
-    /// What lies in the folder beside the report: file name and what it holds.
+    /// Other files of the folder: name and contents.
     pub(crate) files: Vec<(String, String)>,
 }
 
@@ -68,17 +68,17 @@ pub(crate) struct Parameter {
     pub(crate) name: String,
     /// ` mm` or nothing, as it follows a number; the values are already in it.
     pub(crate) unit: &'static str,
-    /// Where the fit started.
+    /// Starting value of the fit.
     pub(crate) start: f64,
-    /// What it found.
+    /// Fitted value.
     pub(crate) fitted: f64,
     /// Its interval.
     pub(crate) interval: [f64; 2],
-    /// What the tank knows.
+    /// True value of the tank.
     pub(crate) truth: f64,
 }
 
-/// What the cameras saw of one circle, means over its cycles and their deviations.
+/// Measured values of one circle, means over its cycles and their deviations.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct MeasuredCircle {
     /// Amplitude, rad.
@@ -109,7 +109,7 @@ pub(crate) struct ModelCircle {
 /// Poses of the middle link over time; x along the heading at the symmetric shape.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Track {
-    /// What was played.
+    /// Name of the gait.
     pub(crate) label: String,
     /// Seconds, x and y in metres, heading in radians.
     pub(crate) poses: Vec<[f64; 4]>,
@@ -122,7 +122,7 @@ pub(crate) struct GaitPicture {
     pub(crate) arcs: Vec<(String, Vec<[f64; 2]>)>,
     /// The knots that were uploaded, thinned.
     pub(crate) set_points: Vec<[f64; 2]>,
-    /// What the joints really make of them.
+    /// Angles that the joints really take.
     pub(crate) played: Vec<[f64; 2]>,
     /// The bound on the joints, rad.
     pub(crate) bound: f64,

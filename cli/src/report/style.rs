@@ -1,4 +1,4 @@
-//! What all figures look like: colours, sizes, strokes, subscripts, the heads of arrows, legends.
+//! Common look of all figures: colours, sizes, strokes, subscripts, arrow heads, legends.
 
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -27,7 +27,7 @@ pub(crate) const NAMES: i32 = 17;
 pub(crate) const WORDS: i32 = 15;
 /// See [`NUMBERS`].
 pub(crate) const TITLE: i32 = 19;
-/// How broad a zero-level curve is: a gait that runs along it leaves it visible on either side.
+/// Width of a zero-level curve: a gait that runs along it leaves it visible on either side.
 pub(crate) const ZERO_CURVE: f64 = 5.0;
 
 /// Height of a legend's line, pixels of the page.
@@ -37,7 +37,7 @@ const ARROWS: usize = 4;
 /// An arrow head from its tip to its back, and half as wide as it is at the back, pixels of the page.
 const HEAD: [f64; 2] = [11.0, 4.6];
 
-/// Where a figure is drawn.
+/// Area of a figure.
 pub(crate) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 /// A place in the units of the axes.
 pub(crate) type Point = (f64, f64);
@@ -58,7 +58,7 @@ pub(crate) fn pixels(page_pixels: f64) -> i32 {
     (page_pixels * f64::from(SCALE)).round() as i32
 }
 
-/// What the drawing library says as it gives up.
+/// Message of the drawing library.
 pub(crate) fn said(error: &dyn std::fmt::Display) -> String {
     error.to_string()
 }
@@ -95,7 +95,7 @@ pub(crate) fn finished(drawing: &str, size: (i32, i32)) -> String {
 /// Text of a drawing in which `H_x` shows an x below the line.
 pub(super) fn subscripted(text: &str) -> String {
     split(text, |index| {
-        // What follows is lifted again; the length is that of the subscript's smaller letters.
+        // The following text is raised again; the length is that of the subscript's smaller letters.
         format!(
             "<tspan dy=\"0.3em\" font-size=\"72%\">{index}</tspan><tspan dy=\"-0.216em\">\u{200b}</tspan>"
         )
@@ -132,7 +132,7 @@ fn split(text: &str, index: impl Fn(char) -> String) -> String {
     out
 }
 
-/// Where the heads of a curve's arrows sit and where they point, as a unit vector: evenly spaced along it.
+/// Positions and directions (unit vectors) of a curve's arrow heads: evenly spaced along it.
 pub(crate) fn arrows(points: &[Point]) -> Vec<(Point, Point)> {
     let steps = points.windows(2).filter_map(|pair| match pair {
         [from, to] => Some((*from, *to, (to.0 - from.0).hypot(to.1 - from.1))),

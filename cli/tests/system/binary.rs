@@ -5,7 +5,7 @@ use std::process::{Command, Output};
 
 use serde_json::Value;
 
-/// What a run of the binary left behind.
+/// Result of a run of the binary.
 pub(crate) struct Ran {
     pub(crate) status: i32,
     pub(crate) stdout: String,
@@ -55,7 +55,7 @@ pub(crate) fn command(folder: &Path, words: &[&str]) -> Command {
     command
 }
 
-/// The binary where no file can grow beyond so many blocks of 512 bytes: what a full disk is to a program.
+/// The binary with a limit on file sizes in blocks of 512 bytes, which acts as a full disk.
 pub(crate) fn on_a_small_disk(folder: &Path, blocks: u32, words: &[&str]) -> Command {
     let mut shell = Command::new("sh");
     let limited = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$@\"");

@@ -45,7 +45,7 @@ fn optima_pass_and_circles_fail() {
         "2.9",
     ];
     swimmer_in(folder.path(), &certify).with_status(1);
-    // Another swimmer's gait is asked all the same.
+    // Another swimmer's gait is certified as well.
     let certify = [
         "certify",
         "--json",
@@ -95,7 +95,7 @@ fn a_circle_fails_with_its_whole_certificate() {
     swimmer(&["certify", "--swimmer", "purcell", "--gait", "circle:1.2"]).with_status(2);
 }
 
-/// Six digits of an optimum decide nothing, and a command that was asked for a certificate says so.
+/// Six digits of an optimum decide nothing, and a command with a request for a certificate reports that.
 #[test]
 fn rounded_samples_leave_a_gait_undecided() {
     let folder = tempfile::tempdir().unwrap();

@@ -220,7 +220,7 @@ fn what_a_calibration_leaves_behind(demo: &Path) {
         (&"label".into(), &"heading".into())
     );
     is_assessed(&answer);
-    // The estimate by likelihood, beside the paper's.
+    // The estimate by likelihood, in addition to the paper's.
     let likelihood = &answer["likelihood"];
     let chi = number(likelihood, "chi");
     assert!((chi / 3.598 - 1.0).abs() < 0.01, "{likelihood:#}");
@@ -231,7 +231,7 @@ fn what_a_calibration_leaves_behind(demo: &Path) {
     let evidence: serde_json::Value = serde_json::from_str(&read("evidence.json")).unwrap();
     assert_eq!(evidence["without_run"].as_array().unwrap().len(), 9);
 
-    // The fitted swimmer is ready to be used; a changed input is told.
+    // The fitted swimmer is ready for use; a changed input is reported.
     let words = [
         "simulate",
         "--swimmer",

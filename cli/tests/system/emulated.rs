@@ -1,4 +1,4 @@
-//! The real firmware on an emulated board behind a pseudo-terminal: the shipped binary cannot tell it from hardware.
+//! The real firmware on an emulated board behind a pseudo-terminal: to the shipped binary it is hardware.
 
 use std::path::{Path, PathBuf};
 

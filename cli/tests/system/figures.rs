@@ -1,4 +1,4 @@
-//! What every figure and every page looks like.
+//! Common look of every figure and every page.
 
 use std::fs;
 
@@ -35,7 +35,7 @@ fn subscripts_are_real(page: &str) {
     }
 }
 
-/// How broad the lines of this colour are, in units of the drawing.
+/// Widths of the lines of this colour, in units of the drawing.
 fn widths(svg: &str, color: &str) -> Vec<u32> {
     let lines = svg.split("<polyline").skip(1);
     let drawn = lines

@@ -10,7 +10,7 @@ use rustix::process::{Pid, Signal, kill_process};
 
 use crate::binary::{Ran, TwinProcess, command, interrupt, swimmer_in};
 
-/// From being told so to the robot at rest, the start of the program and its answer included.
+/// Longest time from a command to the robot at rest, including the start of the program and its output.
 const SOON: Duration = Duration::from_secs(1);
 
 /// A detached play, and a suspended `play --attach` that has the port.
@@ -49,7 +49,7 @@ impl Scene {
             .read_line(&mut first)
             .unwrap();
         assert!(first.contains("Ctrl-C stops it"), "{first}");
-        // Through the holder: now it waits for the end of the play, and hears who asks.
+        // Through the holder: now it waits for the end of the play, and receives requests.
         swimmer_in(folder.path(), &["robot", "status", "--port", &port]).with_status(0);
         send(&holder, Signal::STOP);
         Self {
@@ -104,7 +104,7 @@ fn an_estop_gets_past_a_suspended_holder() {
         for words in ["does not answer: it is suspended", "The stop went past it"] {
             assert!(stopped.stderr.contains(words), "{stopped}");
         }
-        // Whatever is no stop is told at once.
+        // Requests other than a stop fail at once.
         let (refused, waited) = scene.robot(&["status"]);
         let refused = refused.with_status(1);
         assert!(refused.stderr.contains("does not answer"), "{refused}");

@@ -182,7 +182,7 @@ fn filtered(text: &str, folder: &Path) -> String {
     text.lines().map(filter).collect()
 }
 
-/// First line in which two documents differ, with both texts; `None` if there is none.
+/// First line in which two documents differ, with both texts. Returns `None` if they are equal.
 fn difference(kept: &str, printed: &str) -> Option<String> {
     let (kept, printed): (Vec<_>, Vec<_>) = (kept.lines().collect(), printed.lines().collect());
     let at =

@@ -222,7 +222,7 @@ fn a_page_drives_the_robot_and_another_one_watches_and_stops_it() {
 
     let mut watcher = lab.link(&[("Origin", "null")]).unwrap();
     watcher.until_wheel(false, false);
-    // What a watcher sends goes nowhere; what it asks in words does.
+    // A watcher's frames are dropped; its requests in words are served.
     watcher.write(&[0; 64]).unwrap();
     watcher.ask("drive");
     watcher.until_wheel(false, false);
@@ -305,7 +305,7 @@ fn a_page_whose_script_hangs_loses_the_wheel_within_two_seconds() {
 #[cfg(unix)]
 const ARRIVED: usize = 4096 + 512;
 
-/// A robot's end of a pseudo-terminal that takes nothing from it unless it is told to.
+/// A robot's end of a pseudo-terminal that reads nothing until it is allowed to.
 #[cfg(unix)]
 struct SilentRobot(PtyPort);
 
@@ -335,7 +335,7 @@ impl SilentRobot {
     }
 }
 
-/// Sends frames for the robot as fast as the connection takes them, until it is told to end.
+/// Sends frames for the robot as fast as the connection takes them, until its end flag is set.
 #[cfg(unix)]
 fn flood(mut page: WebPort) -> (Arc<AtomicBool>, JoinHandle<()>) {
     let end = Arc::new(AtomicBool::new(false));

@@ -1,5 +1,4 @@
-//! What is written, and what is left where nothing could be: answers that do not arrive, pipes, folders of a command that was
-//! interrupted.
+//! Outputs that cannot be written, and the files left behind: closed readers, pipes, folders of a command that was interrupted.
 
 use std::os::fd::OwnedFd;
 use std::os::unix::fs::FileTypeExt as _;

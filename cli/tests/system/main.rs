@@ -1,5 +1,5 @@
-//! The shipped binary as its users run it. These tests live beside the binary because only here does Cargo build it
-//! afresh and say where it is (`CARGO_BIN_EXE_swimmer`), so that no stale binary is ever tested.
+//! The shipped binary as its users run it. These tests are in this package because only here does Cargo build the binary and pass
+//! its path (`CARGO_BIN_EXE_swimmer`), so that no stale binary is ever tested.
 
 mod attack;
 mod binary;

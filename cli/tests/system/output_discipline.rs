@@ -1,4 +1,4 @@
-//! What scripts rely on: one JSON document, the exit status, nothing half-written.
+//! Guarantees for scripts: one JSON document, the exit status, no partial file.
 
 use crate::binary::{swimmer, swimmer_in, typed};
 
@@ -129,7 +129,7 @@ fn what_fails_leaves_nothing_behind() {
     assert_eq!(left(), 1);
 }
 
-/// What is answered with status 1 says why under the key that every failure has.
+/// An output with status 1 has its reason under the key that every failure has.
 #[test]
 fn a_foretold_refusal_is_an_error_for_scripts() {
     let words = "robot upload circle:150deg --dry-run --swimmer robot --json";
@@ -145,7 +145,7 @@ fn a_foretold_refusal_is_an_error_for_scripts() {
     assert!(ran.stderr.contains(refused), "{ran}");
 }
 
-/// Help is for people, also where a script asks.
+/// Help is for people, also with `--json`.
 #[test]
 fn help_takes_json_and_stays_text() {
     for words in [
@@ -193,7 +193,7 @@ fn a_gait_made_for_another_swimmer_needs_force() {
         refused.stderr.contains("made for `purcell`") && refused.stderr.contains("--force"),
         "{refused}"
     );
-    // What is foretold is no more than what the upload does.
+    // The prediction is not stricter than the upload.
     let foretold = robot(&["upload", "purcell.gait", "--dry-run"]).with_status(1);
     assert_eq!(foretold.stderr, refused.stderr);
     robot(&["upload", "purcell.gait", "--dry-run", "--force"]).with_status(0);

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::binary::typed;
 
-/// How the pictures under `docs/pictures` are made. `SWIMMER_PICTURES=overwrite cargo test -p swimmer --test system pictures`
+/// Commands of the pictures under `docs/pictures`. `SWIMMER_PICTURES=overwrite cargo test -p swimmer --test system pictures`
 /// makes them again.
 const OF_THE_README: [(&str, &str); 4] = [
     ("optimize displacement --swimmer purcell -o best.gait", ""),
@@ -24,7 +24,7 @@ const OF_THE_README: [(&str, &str); 4] = [
 ];
 const ANIMATION: &str = "cycle.gif";
 
-/// As the issue of a page that loads at once asks.
+/// Size limit of an animation on a page that loads at once.
 const LARGEST_ANIMATION: usize = 400_000;
 
 #[test]
@@ -89,7 +89,7 @@ fn each_kind_is_what_its_name_says() {
     );
     let gif = file("one.gif");
     assert!(gif.starts_with(b"GIF89a\x80\x02\x4a\x01"), "640 × 330");
-    // What is there stays.
+    // An existing file is not replaced.
     let refused = draw("circle:70deg", "one.gif").with_status(2);
     assert!(refused.stderr.contains("--overwrite"), "{}", refused.stderr);
 }

@@ -17,7 +17,7 @@ fn playlist(steps: &[(&str, u32, f64)]) -> tempfile::TempDir {
 
 const PLAY: &str = "robot play --playlist list.toml --swimmer robot --port twin --json";
 
-/// As far as the cycles carry in the model, but for what servos and ticks take.
+/// The displacement is that of the model, except for the effects of servos and ticks.
 #[test]
 fn a_playlist_is_played_to_its_end() {
     let folder = playlist(&[("circle:0.7", 3, 6.0), ("circle:0.7", 2, 9.0)]);

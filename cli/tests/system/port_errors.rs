@@ -44,7 +44,7 @@ impl Device {
         }
     }
 
-    /// What `swimmer robot info` says of it, and the exit status.
+    /// Message of `swimmer robot info` about it, and the exit status.
     fn sentence(&self) -> String {
         let ran =
             swimmer_in(self.folder.path(), &["robot", "info", "--port", "port"]).with_status(1);
@@ -220,7 +220,7 @@ fn nobody_at_a_tcp_port() {
     filters.bind(|| insta::assert_snapshot!(ran.stderr, @"error: cannot connect to the robot at [ADDRESS]: Connection refused (os error 111); is `swimmer twin --tcp` running?"));
 }
 
-/// Of several ports the one where a robot answers is taken, and said; the others say why they are none.
+/// Among several ports, the one with a robot is used, and named; the reasons against the others are printed.
 #[test]
 fn the_robot_among_several_ports() {
     let silent = Device::new(|_| Vec::new());

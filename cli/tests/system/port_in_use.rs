@@ -56,7 +56,7 @@ impl Scene {
         wait_for(state, || self.status());
     }
 
-    /// How the play ended, and what it said of it.
+    /// Exit status and output of the play.
     fn play_ended(mut self) -> (Option<i32>, String) {
         let status = self.play.wait().unwrap().code();
         let mut text = String::new();
@@ -135,7 +135,7 @@ fn a_pause_and_a_resume_keep_the_play_that_holds_the_port_waiting() {
     assert!(said.contains("Ctrl-C: the robot was stopped"), "{said}");
 }
 
-/// A second screen beside the play: it hears what the play hears, and leaves when the play does.
+/// A second screen during the play: it receives the same telemetry, and ends with the play.
 #[test]
 fn a_watch_sees_the_robot_through_the_play_that_holds_the_port() {
     let scene = Scene::playing();
@@ -193,7 +193,7 @@ fn what_needs_the_port_for_itself_is_told_who_has_it_and_how_to_stop() {
     swimmer_in(scene.folder.path(), &words).with_status(0);
 }
 
-/// A program that is none of ours: it cannot be asked, so the sentence must do.
+/// A program other than ours accepts no request, so the message must suffice.
 #[test]
 fn a_foreign_program_with_the_port_is_named() {
     let folder = tempfile::tempdir().unwrap();

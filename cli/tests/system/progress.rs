@@ -1,4 +1,4 @@
-//! What takes over a second tells how far it is and how long it will take: on a terminal, and only there.
+//! Jobs of more than a second show their progress and the remaining time: on a terminal, and only there.
 
 use std::fs::File;
 use std::io::Read as _;
@@ -9,7 +9,7 @@ use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 
 use super::binary::command;
 
-/// What a command writes to a terminal on its standard error.
+/// Output of a command to a terminal on its standard error.
 fn on_a_terminal(words: &[&str], columns: u16) -> String {
     let terminal = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
     grantpt(&terminal).unwrap();

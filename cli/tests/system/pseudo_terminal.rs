@@ -166,7 +166,7 @@ fn pause_resume_and_estop() {
     let refused = robot(&["play", "--cycles", "1"]).with_status(1);
     assert!(refused.stderr.contains("--clear-estop"), "{refused}");
     assert_eq!(state(), "e-stopped");
-    // Nobody is there to say yes; then somebody has, and nothing else is asked of the robot.
+    // Without an operator to confirm; then with one, and no other request reaches the robot.
     let asked = robot(&["estop", "--clear"]).with_status(1);
     assert!(asked.stderr.contains("--yes"), "{asked}");
     assert_eq!(state(), "e-stopped");
@@ -324,7 +324,7 @@ fn a_logged_play_is_replayed() {
     assert!(refused.stderr.contains("exists"), "{refused}");
 }
 
-/// What went wrong is what a log is for: it is whole also after a refusal.
+/// Failures are the purpose of a log: it is complete also after a refusal.
 #[test]
 fn a_log_survives_the_failure_it_records() {
     let folder = tempfile::tempdir().unwrap();
@@ -349,7 +349,7 @@ fn a_log_survives_the_failure_it_records() {
     assert!(frames.len() > 10, "{}", frames.len());
 }
 
-/// Over a radio nobody knows who speaks: what only somebody at the robot may ask for is refused, with what to do.
+/// A radio does not identify its sender: requests that need a person at the robot are refused, with the next step.
 #[test]
 fn a_first_key_needs_somebody_at_the_robot() {
     for (door, status) in [(&["--radio"][..], 1), (&[], 0)] {

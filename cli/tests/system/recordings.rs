@@ -1,4 +1,4 @@
-//! What was recorded is there, whatever became of the program or the disk; and no file is written over unasked.
+//! Recorded data survive the end of the program and a full disk; and no file is overwritten without permission.
 
 use std::path::Path;
 use std::process::Stdio;

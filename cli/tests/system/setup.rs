@@ -78,7 +78,7 @@ fn angles(line: &str) -> Option<[f64; 2]> {
 struct Operator<'a> {
     twin: &'a Twin,
     answers: ChildStdin,
-    /// How much had been seen when the last question was answered.
+    /// Amount of output when the last question was answered.
     looked: usize,
     /// The answer to how far a joint may turn.
     ends: &'a str,
@@ -231,7 +231,7 @@ fn a_mirrored_an_off_centre_and_two_sluggish_servos_are_found_and_set_up() {
             );
         }
     }
-    // What was measured is what is foretold with.
+    // Predictions use the measured values.
     let file = std::fs::read_to_string(folder.join("ours.toml")).unwrap();
     assert!(
         file.contains("swimmer robot servo front --sign -"),

@@ -38,7 +38,7 @@ fn table(folder: &Path) -> String {
     merged.json()["sha256"].as_str().unwrap().to_owned()
 }
 
-/// What an unbroken run makes.
+/// Table of an uninterrupted run.
 fn whole() -> String {
     let folder = tempfile::tempdir().unwrap();
     planned(folder.path(), SPEC);
@@ -165,7 +165,7 @@ fn a_full_disk_is_an_error_and_leaves_no_half_part() {
     assert_eq!(left, 2, "the spec and the folder");
 }
 
-/// All memory that the program may so much as ask for is 1 GiB.
+/// The program's memory is limited to 1 GiB.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_million_designs_fit_into_a_gibibyte() {
@@ -268,8 +268,8 @@ fn a_script_for_slurm_needs_a_time() {
     }
 }
 
-/// Tells how much faster two threads are than one, the best of three runs each: a figure for a quiet machine, so it is told, not
-/// asked for.
+/// Prints the speed-up of two threads over one, the best of three runs each: a figure for a quiet machine, so it is printed, not
+/// checked.
 #[test]
 #[ignore = "takes a minute, and tells times"]
 fn strong_scaling_on_two_cores() {

@@ -1,4 +1,4 @@
-//! What the answers of several objectives share: a quarter, arcs, and how an answer ends.
+//! Common parts of the outputs: a quarter, arcs, and the end of an output.
 
 use std::path::Path;
 
@@ -60,7 +60,7 @@ pub(super) fn tell_arcs(answer: &mut Document, arcs: &[Arc]) {
     }
 }
 
-/// Adds what gaits for efficiency have beside the others, where no solver tells it; of those that were optimised as Fourier series
+/// Adds the figures of efficiency gaits that a solver does not report; those of gaits that were optimised as Fourier series
 /// first. This condition of the certificate is the residual.
 pub(crate) fn tell_figures(
     answer: &mut Document,
@@ -111,7 +111,7 @@ impl Found {
     }
 }
 
-/// Says where the gait is beyond the robot of the file, at the period that it runs in unless told otherwise.
+/// Warns if the gait is beyond the robot of the file, at its period or the default one.
 pub(super) fn say_if_beyond(task: &Task, gait: &OptimalGait) {
     if let Ok(curve) = AnyGait::from_file(&gait.gait_file(&task.file.name)) {
         crate::own_robot::say_if_beyond(&task.file, &curve, PERIOD_S);

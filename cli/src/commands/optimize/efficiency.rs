@@ -17,7 +17,7 @@ use crate::output::verbose;
 use crate::playable::searched;
 use crate::quantity;
 
-/// Order of a robust gait's series unless told otherwise.
+/// Default order of a robust gait's series.
 const ROBUST_ORDER: usize = 6;
 
 /// Find a gait of most Lighthill efficiency by the maximum principle, with its certificate
@@ -101,7 +101,7 @@ impl Objective for Efficiency {
     }
 }
 
-/// What is told of a gait: its efficiency is that of the gait that is written.
+/// Output of a gait: its efficiency is that of the written gait.
 fn told(name: &str, gait: &OptimalGait, timed: Option<&Timed>) -> Document {
     let mut answer = Document::new(format!("{name}, a local optimum of efficiency"));
     let as_written = timed.map_or(gait.efficiency, |timed| timed.efficiency);
@@ -119,7 +119,7 @@ fn told(name: &str, gait: &OptimalGait, timed: Option<&Timed>) -> Document {
             // Max-norm of the shooting conditions.
             .key("residual", figures.residual)
             .key("power_variation", figures.power_variation)
-            // What led to the start of the polish, and that method's own value.
+            // Method of the initial guess, with that method's own value.
             .key("method", figures.method)
             .key_if("direct_efficiency", figures.direct_efficiency);
         if verbose() {
@@ -172,7 +172,7 @@ mod tests {
     use super::*;
     use crate::arguments::load_swimmer;
 
-    /// Servos at their limit cost efficiency, and what is told is that of the file.
+    /// Servos at their limit cost efficiency, and the reported value is that of the file.
     #[test]
     fn the_efficiency_is_that_of_the_gait_that_is_written() {
         let gait = efficiency(&EfficiencyProblem {

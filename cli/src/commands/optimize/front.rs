@@ -11,7 +11,7 @@ use crate::document::{Document, object};
 use crate::failure::Outcome;
 use crate::report::chart::{Chart, INK, MEASURED, PREDICTED, Point, Series};
 
-/// Where the front goes, and in which form.
+/// Path of the front, with its form.
 #[derive(Debug, Clone)]
 pub(crate) struct FrontFile {
     pub(super) path: PathBuf,
@@ -52,7 +52,7 @@ impl FrontFile {
             Form::Table => table(front, length)?,
         };
         write_atomically(&self.path, text.as_bytes())?;
-        // Those in which a farthest gait is told, of those that were looked at.
+        // Number of periods with a farthest gait, and number of all periods.
         let (told, periods) = (front.farthest.iter().flatten().count(), front.periods.len());
         let path = self.path.display();
         answer
@@ -68,7 +68,7 @@ impl FrontFile {
     }
 }
 
-/// A line for each period; empty where no gait is told.
+/// A line for each period; empty without a gait.
 fn table(front: &Front, length: f64) -> Outcome<String> {
     let farthest = front.periods.iter().zip(&front.farthest);
     let rows = farthest.map(|(period, gait)| {
@@ -99,7 +99,7 @@ fn figure(front: &Front, name: &str, length: f64) -> Chart {
             gait.distance_over_length * length * 1e3,
         )
     };
-    // Where no gait is told the line breaks off.
+    // The line is interrupted at periods without a gait.
     let mut series: Vec<Series> = front
         .farthest
         .split(Option::is_none)

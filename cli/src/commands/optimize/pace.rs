@@ -1,4 +1,4 @@
-//! What is told of gaits whose servos are limited: their pace, and how they are played.
+//! Output of gaits whose servos are limited: their pace, and their play on the robot.
 
 use gait_optimizer::OptimalGait;
 use swimmer_files::{AnyGait, ServoFile, SwimmerFile};
@@ -7,10 +7,10 @@ use crate::document::Document;
 use crate::own_robot::{PlayedSpeed, say_if_beyond};
 use crate::quantity;
 
-/// What the progress of a search for the fastest gait says.
+/// Progress message of a search for the fastest gait.
 pub(super) const SEARCHING: &str = "looking for the fastest gait";
 
-/// How the answer of a fastest gait begins, from its speed \[1/s\] and the way of a cycle, both over L, and its period \[s\].
+/// First lines about a fastest gait, from its speed \[1/s\] and displacement of a cycle, both over L, and its period \[s\].
 pub(super) fn at_pace(
     kind: &str,
     file: &SwimmerFile,

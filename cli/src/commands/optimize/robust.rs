@@ -22,7 +22,7 @@ use crate::fit_file::load_fit;
 /// Evenly spaced instants of a cycle at which the power is looked at.
 const INSTANTS: u32 = 1024;
 
-/// What is uncertain, and what is made of it.
+/// Uncertainty, and the statistic to maximise.
 #[derive(Debug, clap::Args)]
 pub(super) struct Robustly {
     /// Design for all that this fit (of swimmer calibrate: fit.json, or its --json) leaves open of the sphere's radius and χ, and
@@ -45,7 +45,7 @@ enum Which {
 }
 
 impl Robustly {
-    /// What is left open and what shall be maximised, if that was asked for.
+    /// The uncertainty and the statistic. Returns `None` without `--robust` and `--gain`.
     pub(super) fn load(&self, file: &SwimmerFile) -> Outcome<Option<(Uncertainty, Over)>> {
         let gain: Option<[f64; 2]> = self.gain.as_slice().try_into().ok();
         let mut uncertainty = match (&self.robust, gain) {

@@ -50,7 +50,7 @@ pub(crate) struct Speed {
     front: Option<FrontFile>,
 }
 
-/// Which way a gait leads.
+/// Direction of the displacement.
 #[derive(Debug, Clone, Copy, clap::ValueEnum)]
 enum Heading {
     /// Wherever it is fastest
@@ -124,7 +124,7 @@ impl Objective for Speed {
     }
 }
 
-/// Adds how fast the fastest gait of any heading is beside one whose heading is prescribed.
+/// Adds the speed of the fastest gait of any heading to the output of a gait with a prescribed heading.
 fn tell_any_heading(answer: &mut Document, led: &SpeedProblem, speed: f64) -> Outcome<()> {
     let any = fastest(&led.led(HeadingRule::Any))?.speed_over_length;
     answer.key("any_heading_speed_over_length_per_s", any);
@@ -139,7 +139,7 @@ fn tell_any_heading(answer: &mut Document, led: &SpeedProblem, speed: f64) -> Ou
     Ok(())
 }
 
-/// What is told of a gait of this kind before what robustness, servos and the front bring.
+/// Output of a gait of this kind, without robustness, servos and front.
 fn told(kind: &str, file: &SwimmerFile, found: &Fastest) -> Document {
     let speed = found.speed_over_length;
     let way = found.distance_over_length;

@@ -11,7 +11,7 @@ use crate::document::{Document, object};
 use crate::failure::{Failure, Outcome};
 use crate::quantity;
 
-/// How fast the servos are, and in which period the gait shall run.
+/// Rates of the servos, and period of the gait.
 #[derive(Debug, Clone, Copy, Default, clap::Args)]
 pub(crate) struct ServoTiming {
     /// Servos turn no faster than this angle a second: the gait is timed best under that limit instead of at constant power
@@ -35,7 +35,7 @@ pub(super) struct Timed {
 }
 
 impl ServoTiming {
-    /// Times a gait, if that was asked for.
+    /// Times a gait, if a rate was given.
     pub(super) fn of(&self, task: &Task, gait: &OptimalGait) -> Outcome<Option<Timed>> {
         let (Some(max_rate), Some(period)) = (self.max_rate, self.period) else {
             return Ok(None);
@@ -60,7 +60,7 @@ impl ServoTiming {
 }
 
 impl Timed {
-    /// Adds what the limit costs. ξ of the timed gait is told by answers that have an efficiency.
+    /// Adds the cost of the limit. ξ of the timed gait is reported by outputs with an efficiency.
     pub(super) fn tell(&self, answer: &mut Document) {
         let timing = &self.timing;
         let rate = |value: f64| format!("{} a second", quantity::angle(value));
@@ -104,7 +104,7 @@ impl Timed {
 }
 
 impl From<TimingError> for Failure {
-    /// A gait that servos cannot run in time was tried; numbers that are none are bad input.
+    /// A gait that servos cannot run in time was tried; invalid numbers are bad input.
     fn from(error: TimingError) -> Self {
         match error {
             TimingError::Rate { .. } | TimingError::Period { .. } => Self::bad_input(&error),

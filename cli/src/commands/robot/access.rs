@@ -1,4 +1,4 @@
-//! How a command reaches its robot: the port that was named, or the one where a robot answers; who else holds it; the log.
+//! Access to the robot: the named port, or the one where a robot answers; other processes that hold it; the log.
 
 use std::path::PathBuf;
 use std::thread::sleep;
@@ -20,7 +20,7 @@ use crate::link_log::Recorder;
 use crate::output::aside;
 use crate::virtual_robot::EmulatedBoard;
 
-/// Where the robot is, and what is kept of the talk with it.
+/// Options that name the port, the log and the key.
 #[derive(Debug, clap::Args)]
 pub(super) struct Access {
     /// Serial port, pseudo-terminal, tcp:HOST:PORT, `twin` or `emulator`; of several (A,B,C) the one where a robot answers. Left out:
@@ -40,7 +40,7 @@ pub(super) struct Access {
     board: EmulatedBoard,
 }
 
-/// A greeted robot, with all that a command needs beside it.
+/// A greeted robot, with port name, log and requests of other processes.
 pub(super) struct Line {
     pub(super) robot: Robot<AnyPort>,
     /// The port's name.
@@ -51,7 +51,7 @@ pub(super) struct Line {
     seen_us: Option<u64>,
 }
 
-/// How a robot can be told something.
+/// Connection to the robot: its own line, or the process that holds the port.
 pub(super) enum Met {
     /// Over its line, which is ours.
     Line(Box<Line>),
@@ -67,23 +67,23 @@ pub(super) enum Reached {
     Held(HeldBy),
 }
 
-/// A short command of another process has the port for about so long.
+/// Usual time for which a short command of another process has the port.
 pub(super) const A_MOMENT: Duration = Duration::from_secs(1);
-/// Time between two looks at a port that is taken.
+/// Interval between two tries of a taken port.
 pub(super) const LOOK_AGAIN: Duration = Duration::from_millis(50);
-/// How often a waiting command looks up: for Ctrl-C, for what other processes ask, for the end.
+/// Interval at which a waiting command handles Ctrl-C, requests of other processes and its end.
 pub(super) const BEAT: Duration = Duration::from_millis(20);
 
 /// Storing takes a second at most, and is tried again after a failure.
 const TO_STORE: Duration = Duration::from_secs(5);
 
 impl Access {
-    /// Whether a port was named.
+    /// `true` if a port was named.
     pub(super) fn names_a_port(&self) -> bool {
         !self.port.is_empty()
     }
 
-    /// Whether every frame is to be kept.
+    /// `true` if every frame is to be logged.
     pub(super) fn logs(&self) -> bool {
         self.log.is_some()
     }
@@ -144,7 +144,7 @@ impl Access {
         }
     }
 
-    /// Reaches the robot and greets it. `command` is what other processes are told.
+    /// Connects to the robot and greets it. Other processes see `command` as the holder.
     ///
     /// # Errors
     /// [`Failure::BadInput`] where no port was named and none or several can be meant, [`Failure::Tried`] when the port
@@ -160,7 +160,7 @@ impl Access {
             let means = self.means(pace)?;
             let opened = reach_alone(name, &means)?;
             let port = traced(opened.port, recorder.as_ref(), &opened.name);
-            // From here on the port is ours: others are told, also while the robot is being greeted.
+            // From here on the port is ours: other processes are informed, also while the robot is being greeted.
             let holder = Holder::announce(&opened.name, command);
             let callbacks = callbacks(&holder);
             let robot = Robot::connect_observed(port, means.session, callbacks)?;
@@ -173,7 +173,7 @@ impl Access {
         let mut robot = robot.map_port(|port| traced(port, recorder.as_ref(), &name));
         robot.call_back(callbacks(&holder));
         if recorder.is_some() {
-            // The greeting belongs to the log: without it nobody can tell which session follows.
+            // The greeting belongs to the log: it determines the session that follows.
             robot.reconnect()?;
         }
         let mut line = Line::new(name, robot, holder, recorder)?;
@@ -181,7 +181,7 @@ impl Access {
         Ok(line)
     }
 
-    /// Has the process that holds the robot's port do what is asked, or takes the port.
+    /// Sends a request to the process that holds the robot's port, or takes the port.
     ///
     /// # Errors
     /// As [`Self::ask_holder`] and [`Self::connect`].
@@ -193,7 +193,7 @@ impl Access {
             }
             match self.connect(command, pace) {
                 Ok(line) => return Ok(Met::Line(Box::new(line))),
-                // Another process took the port between the two: now it can be asked.
+                // Another process took the port in between: the request can go to it.
                 Err(_) if self.held_by().is_some() && begun.elapsed() < 3 * A_MOMENT => {}
                 Err(failure) => return Err(failure),
             }
@@ -211,10 +211,10 @@ impl Access {
         }
     }
 
-    /// Passes something on to the process that holds the robot's port, where there is one. `None`: the port is free.
+    /// Passes a request on to the process that holds the robot's port. Returns `None` if the port is free.
     ///
     /// # Errors
-    /// What that process says.
+    /// The reply of that process.
     pub(super) fn ask_holder(&self, ask: Ask) -> Outcome<Option<Relayed>> {
         match self.held_by() {
             Some(held_by) => held_by.ask(ask),
@@ -229,7 +229,7 @@ impl Access {
         }
         let candidates = self.candidates().into_iter();
         let mut held = candidates.filter_map(|port| HeldBy::of(&port.path));
-        // Of several it cannot be told which one is meant.
+        // With several it is unclear which one is meant.
         held.next().filter(|_| held.next().is_none())
     }
 
@@ -381,12 +381,12 @@ impl Line {
         });
     }
 
-    /// What the port is called.
+    /// Name of the port.
     pub(super) fn name(&self) -> &str {
         &self.name
     }
 
-    /// Lives on for a moment: listens, and does what other processes ask of the robot. Returns telemetry that is new.
+    /// Waits for one beat: listens, and serves requests of other processes. Returns new telemetry.
     ///
     /// # Errors
     /// The link's.
@@ -426,7 +426,7 @@ impl Line {
         }
     }
 
-    /// The robot, and who asks for what, for calls that cannot [`beat`](Self::beat).
+    /// The robot and the queue of requests, for calls that cannot [`beat`](Self::beat).
     pub(super) fn split(&mut self) -> (&mut Robot<AnyPort>, &mut Holder) {
         (&mut self.robot, &mut self.holder)
     }
@@ -455,7 +455,7 @@ impl Line {
     }
 }
 
-/// What there is to say of a key that was named, by what the robot told.
+/// Note about a named key, according to the robot's reply.
 fn doubt(has_key: bool, signs: bool) -> Option<&'static str> {
     match (has_key, signs) {
         (false, _) => Some(

@@ -1,4 +1,4 @@
-//! What the robot says of itself, as JSON keys and as lines for people.
+//! Reports of the robot, as JSON keys and as lines for people.
 
 use std::fmt;
 
@@ -11,7 +11,7 @@ use crate::failure::{Failure, Outcome};
 use crate::output::Output;
 use crate::quantity::{self, Rows};
 
-/// An answer that ends a command with exit status 1: scripts find the reason beside its keys.
+/// Output of a command that fails with exit status 1: its keys, with the reason as an additional one.
 #[derive(Debug, Serialize)]
 struct Failed<'a, A> {
     #[serde(flatten)]
@@ -25,7 +25,7 @@ impl<A: fmt::Display> fmt::Display for Failed<'_, A> {
     }
 }
 
-/// Gives an answer that says no, with the reason, and fails with that.
+/// Prints an output that reports a refusal, with the reason, and fails with that.
 ///
 /// # Errors
 /// Always, with [`Failure::Answered`].
@@ -41,22 +41,22 @@ pub(super) fn answer_no(
     Err(Failure::Answered(reason))
 }
 
-/// A request that needs no other answer than that it was done.
+/// Output of a request that returns nothing but the robot's state.
 #[derive(Debug, Serialize)]
 pub(super) struct Done {
-    /// What the robot is doing now.
+    /// State of the robot.
     pub(super) state: &'static str,
     #[serde(skip)]
     pub(super) sentence: String,
 }
 
-/// What a stop leaves.
+/// Message after a stop.
 pub(super) const STOPPED: &str = "Stopped: the pulses are off.";
-/// What an e-stop leaves.
+/// Message after an e-stop.
 pub(super) const E_STOPPED: &str =
     "E-stopped: the pulses are off; `swimmer robot estop --clear` ends that.";
 
-/// What a pause leaves that needs no link.
+/// Message after a pause that needs no link.
 pub(super) const PAUSED_DETACHED: &str = "Paused: the robot holds its pose for at most 60 s, then stops; `swimmer robot resume` goes on.";
 
 impl Done {
@@ -120,13 +120,13 @@ pub(super) fn gait_line(gait: Option<&Gait>) -> String {
     )
 }
 
-/// What the robot is doing.
+/// State of the robot.
 #[derive(Debug, Serialize)]
 pub(super) struct Doing {
     pub(super) state: &'static str,
-    /// Of the last stop, whatever the robot does now.
+    /// Cause of the last stop, whatever the robot does now.
     cause: &'static str,
-    /// Whether that stop is what led to the state.
+    /// `true` if that stop led to the state.
     #[serde(skip)]
     explained: bool,
     flags: Vec<&'static str>,
@@ -140,16 +140,16 @@ pub(super) struct Doing {
     battery_v: Option<f64>,
     gait: Option<Gait>,
     robot_time_s: f64,
-    /// Who may ask for what only somebody at the robot may; `null`: nobody.
+    /// Right to the requests that need a person at the robot; `null`: nobody has it.
     presence: Option<Presence>,
 }
 
-/// How it is known that somebody is at the robot.
+/// Evidence that a person is at the robot.
 #[derive(Debug, Serialize)]
 struct Presence {
     /// This session came over the USB cable.
     usb: bool,
-    /// For how long the bench window is still open; 0: it is closed.
+    /// Remaining time of the bench window; 0: it is closed.
     window_s: u16,
 }
 
@@ -164,7 +164,7 @@ impl fmt::Display for Presence {
 }
 
 impl Doing {
-    /// What the robot says.
+    /// Asks the robot for its status.
     ///
     /// # Errors
     /// The link's.
@@ -181,7 +181,7 @@ impl Doing {
         Ok(doing)
     }
 
-    /// What a status tells, wherever it comes from.
+    /// From a status of any origin.
     pub(super) fn new(status: &Status) -> Self {
         Self {
             presence: None,
@@ -301,7 +301,7 @@ pub(super) fn state(state: StateName) -> &'static str {
     }
 }
 
-/// Whether a play is under way: it has begun and neither ended nor been stopped.
+/// `true` during a play: it has begun and neither ended nor been stopped.
 pub(super) fn is_under_way(state: StateName) -> bool {
     matches!(
         state,
@@ -309,7 +309,7 @@ pub(super) fn is_under_way(state: StateName) -> bool {
     )
 }
 
-/// Whether the cause of the last stop is why the robot is in this state; in the others that stop is history.
+/// `true` if the cause of the last stop explains the state; in other states that stop is history.
 pub(super) fn is_explained(state: StateName) -> bool {
     !is_under_way(state) && state != StateName::Holding
 }

@@ -145,7 +145,7 @@ fn metres(value: f32) -> String {
 mod tests {
     use super::*;
 
-    /// Every field that the robot can name has a name here, and its own value beside it.
+    /// Every field that the robot can name has a name here, with its value.
     #[test]
     fn a_refused_value_is_named() {
         let preset = swimmer_files::SwimmerFile::preset("robot").unwrap();

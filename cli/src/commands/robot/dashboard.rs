@@ -1,6 +1,6 @@
-//! What the robot is doing, on one screen: a pure picture of what is known, drawn anew at each beat.
+//! State of the robot on one screen: a pure function of the known state, drawn anew at each beat.
 //!
-//! Narrow terminals get everything under each other, wide ones the body and the trail beside it.
+//! Narrow terminals show all panes below each other, wide ones the body and the trail side by side.
 
 mod panes;
 
@@ -22,7 +22,7 @@ use super::playing::Playing;
 /// Everything that the screen shows.
 #[derive(Debug)]
 pub(super) struct Dashboard {
-    /// Which robot, at which port.
+    /// Robot and port.
     pub(super) title: String,
     pub(super) links: Links<f64>,
     pub(super) sphere_radius: f64,
@@ -32,9 +32,9 @@ pub(super) struct Dashboard {
     pub(super) silent: Duration,
     pub(super) link: LinkCounters,
     pub(super) clock: Option<ClockFit>,
-    /// Where the middle link was, by the robot's own prediction \[m\].
+    /// Path of the middle link, by the robot's own prediction \[m\].
     trail: VecDeque<Vector2<f64>>,
-    /// What was last asked of the robot from here.
+    /// Last request sent from here.
     pub(super) note: &'static str,
     /// The first telemetry, with the frames that had been sent and the telemetry that had come by then: both of whoever has
     /// the link, which need not be this program.
@@ -43,7 +43,7 @@ pub(super) struct Dashboard {
 
 /// Points of the trail that are kept: ten minutes at 25 a second.
 const TRAIL: usize = 15_000;
-/// The robot tells so often, µs.
+/// Interval of the robot's telemetry, µs.
 const TELEMETRY_US: u64 = 40_000;
 /// Frames before a share of them means something.
 const ENOUGH: u64 = 50;
@@ -77,14 +77,14 @@ impl Dashboard {
         if sent < ENOUGH || due < ENOUGH as f64 {
             return None;
         }
-        // The robot's count wraps; after so many frames the share is of the last round.
+        // The robot's count wraps; after that many frames the share is that of the last round.
         let sent = (sent % 65_536) as f64;
         let told = self.link.telemetry.saturating_sub(*heard_before) + 1;
         let percent = |arrived: f64, of: f64| (100.0 * (1.0 - arrived / of)).clamp(0.0, 100.0);
         Some([percent(heard, sent), percent(told as f64, due)])
     }
 
-    /// The robot has told more.
+    /// Takes new telemetry.
     pub(super) fn tell(&mut self, telemetry: &Telemetry) {
         let began = self.telemetry.is_some_and(|before| {
             telemetry.cycle < before.cycle || before.state == StateName::Starting
@@ -109,7 +109,7 @@ impl Dashboard {
     /// Draws it.
     pub(super) fn draw(&self, frame: &mut Frame<'_>) {
         if frame.area().height < 8 || frame.area().width < 30 {
-            // Too small for panes: what it does comes first, and as much of the rest as there is room for.
+            // Too small for panes: the state first, then as much of the rest as fits.
             frame.render_widget(Paragraph::new(self.state_lines()), frame.area());
             return;
         }
@@ -137,7 +137,7 @@ impl Dashboard {
             self.body(frame, pose);
             self.trail(frame, trail);
         } else {
-            // The state first, then the link, then the body: what has no room is left out from below.
+            // The state first, then the link, then the body: panes that do not fit are left out from below.
             let room = body.height;
             let state = room.min(10);
             let link = if room >= state + 5 {

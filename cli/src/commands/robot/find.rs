@@ -16,7 +16,7 @@ const BRIEFLY: Duration = Duration::from_secs(4);
 /// Time where there is one port only: its own error is worth waiting for.
 const PATIENTLY: Duration = Duration::from_secs(20);
 
-/// A greeted robot, or why there is none.
+/// A greeted robot, or the reason why there is none.
 pub(super) type Answer<T = Robot<AnyPort>> = Result<T, String>;
 
 /// Greets every port. Nobody is moved by a greeting; a device that is no robot sees a few bytes.

@@ -1,5 +1,5 @@
-//! `swimmer robot flash`: a new firmware over the USB cable, without a probe. The robot is asked into its chip's boot loader,
-//! which comes up as a drive; the image is copied onto that.
+//! `swimmer robot flash`: a new firmware over the USB cable, without a probe. The robot enters its chip's boot loader, which
+//! appears as a drive; the image is copied onto that.
 
 mod drive;
 
@@ -21,7 +21,7 @@ use crate::output::{Output, aside};
 
 /// A drive takes some seconds to come up, a computer some to mount it.
 const TO_COME_UP: Duration = Duration::from_secs(30);
-/// Where `cargo xtask firmware` leaves its images, from the top of the checkout.
+/// Folder of the images of `cargo xtask firmware`, from the top of the checkout.
 const IMAGES: &str = "target/firmware-images";
 
 /// Put a new firmware onto the robot's board, over its USB cable
@@ -45,7 +45,7 @@ pub(super) struct Flash {
 #[derive(Debug, Serialize)]
 struct Flashed {
     file: String,
-    /// What the image says of itself.
+    /// Version in the image's binary information.
     version: Option<String>,
     board: Option<&'static str>,
     drive: String,
@@ -75,7 +75,7 @@ struct Checked {
 /// `swimmer robot flash`.
 pub(super) fn run(access: &Access, arguments: &Flash, output: Output) -> Outcome {
     let interrupt = Interrupt::install()?;
-    // What is named is read before any robot is disturbed.
+    // A named file is read before any robot is disturbed.
     let named = arguments.file.as_deref().map(Checked::read).transpose()?;
     if let Some(folder) = &arguments.drive
         && arguments.by_hand

@@ -61,13 +61,13 @@ pub(super) fn run(access: &Access, arguments: &Hc05, output: Output) -> Outcome 
     Ok(())
 }
 
-/// What was found and done.
+/// Settings found and changed.
 #[derive(Debug, Serialize)]
 struct Answer {
     version: Option<String>,
     before: Settings,
     after: Settings,
-    /// What was not as wanted when it was found.
+    /// Names of the settings that differed.
     differed: Vec<&'static str>,
     checked_only: bool,
 }

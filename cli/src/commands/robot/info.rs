@@ -33,7 +33,7 @@ pub(super) fn run(access: &Access, output: Output) -> Outcome {
     line.close()
 }
 
-/// What the robot says of itself.
+/// Output from the robot's replies.
 fn answer(
     hello: &HelloReply,
     crash_message: Option<String>,
@@ -97,7 +97,7 @@ fn answer(
             format!("{:016x}", u64::from_be_bytes(hello.schema_key)),
         )
         .key("reset_reason", reset_reason)
-        // What a crash before that start left to tell.
+        // Message of a crash before that start.
         .key("crash_message", crash_message)
         .key("session", hello.session)
         .key(

@@ -17,11 +17,11 @@ use crate::failure::{Failure, Outcome};
 use crate::new_file::may_be_written;
 use crate::output::Output;
 
-/// What stands over the key in a file of ours.
+/// Remark above the key in a file of ours.
 const HEAD: &str =
     "# The key of a swimmer robot: who has it can drive the robot. Keep it secret.\n";
 
-/// The key that a robot asks for.
+/// Key for the robot.
 #[derive(Debug, Clone, clap::Args)]
 pub(super) struct KeyFile {
     /// Sign what is sent with the key in this file, for a robot that has one; stop and estop need none
@@ -62,7 +62,7 @@ enum Action {
 struct Changed {
     key_set: bool,
     file: Option<String>,
-    /// Whether the file was written just now.
+    /// `true` if the file was just written.
     made: bool,
 }
 
@@ -99,7 +99,7 @@ impl KeyFile {
         })
     }
 
-    /// Whether a file was named.
+    /// `true` if a file was named.
     pub(super) fn is_named(&self) -> bool {
         self.key.is_some()
     }

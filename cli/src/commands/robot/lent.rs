@@ -21,7 +21,7 @@ use super::port_owner::{Ask, Holder, Relayed};
 use crate::failure::Outcome;
 use crate::virtual_robot::EmulatedBoard;
 
-/// Which port, and how fast.
+/// Port and speed.
 #[derive(Debug, clap::Args)]
 pub(crate) struct PortToLend {
     /// Let the page drive this robot: a serial port, pseudo-terminal, tcp:HOST:PORT, `twin` or `emulator`
@@ -49,10 +49,10 @@ pub(crate) struct LentPort {
     looked: Instant,
 }
 
-/// What came of a moment's wait at the port.
+/// Result of a short wait at the port.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum Heard {
-    /// So many bytes; none where the time passed.
+    /// Number of bytes; 0 after a timeout.
     Bytes(usize),
     /// The port went away; it is looked for from now on.
     Gone(String),
@@ -61,7 +61,7 @@ pub(crate) enum Heard {
 }
 
 impl PortToLend {
-    /// Opens it, where one was named; others are told that `command` has it.
+    /// Opens the port, if one was named; other processes see `command` as its holder.
     ///
     /// # Errors
     /// [`crate::failure::Failure::Tried`] when it cannot be opened or somebody else has it.
@@ -91,12 +91,12 @@ impl PortToLend {
 }
 
 impl LentPort {
-    /// What the port is called.
+    /// Name of the port.
     pub(crate) fn name(&self) -> &str {
         &self.name
     }
 
-    /// Whether it is open.
+    /// `true` if it is open.
     pub(crate) fn is_open(&self) -> bool {
         self.port.is_some()
     }
@@ -106,12 +106,12 @@ impl LentPort {
         bytes_per_second(&self.means)
     }
 
-    /// Every stop of this program's own was acknowledged, or there was none.
+    /// `true` if every stop of this program was acknowledged.
     pub(crate) fn is_stopped(&self) -> bool {
         self.stopping.is_none()
     }
 
-    /// Waits for bytes of the robot, does what other programs ask, and sends a stop again that was not heard.
+    /// Waits for bytes of the robot, serves requests of other programs, and repeats a stop that was not acknowledged.
     pub(crate) fn read(&mut self, buf: &mut [u8], timeout: Duration) -> Heard {
         self.serve_others();
         let Some(port) = &mut self.port else {
@@ -163,7 +163,7 @@ impl LentPort {
         }
     }
 
-    /// What the robot is doing, as far as its telemetry was overheard.
+    /// State of the robot, according to the last telemetry that passed through.
     fn state(&self) -> Option<StateName> {
         self.told.map(|told| told.state)
     }
@@ -189,7 +189,7 @@ impl LentPort {
         session.poll(now);
         let frames = session.take_outgoing();
         let mut ended = false;
-        // Nothing was asked of it but stops: whatever ends the last one ends the session.
+        // Only stops were sent: the last event of a stop ends the session.
         while let Some(event) = session.next_event() {
             ended |= matches!(
                 event,
@@ -231,7 +231,7 @@ impl LentPort {
         }
     }
 
-    /// What another `swimmer` asks of the robot: here it is a stop, or how it stands.
+    /// Serves requests of other `swimmer` processes: a stop, or the state.
     fn serve_others(&mut self) {
         for (ask, asker) in self.holder.take_asked() {
             if let Some(halt) = ask.halt() {

@@ -1,5 +1,5 @@
-//! What moves the robot, and what stops it. Whatever goes wrong after the servos have power, the robot is stopped before
-//! the command ends.
+//! Commands that move the robot, and those that stop it. After any failure with powered servos, the robot is stopped before the
+//! command ends.
 
 use std::fmt;
 use std::ops::ControlFlow;
@@ -26,11 +26,11 @@ use crate::output::{Output, aside};
 /// Longest detached play that a robot accepts, s.
 const ALONE_S: f64 = 3600.0;
 
-/// What the first pulses do, said before they come.
+/// Warning before the first pulses.
 pub(super) const MAY_JUMP: &str =
     "The pulses begin: servos that stand elsewhere may jump to neutral.";
 
-/// How a play ended.
+/// Result of a play.
 #[derive(Debug, Serialize)]
 struct Played {
     state: &'static str,

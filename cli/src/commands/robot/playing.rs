@@ -1,4 +1,4 @@
-//! How far a play has come and when it will end.
+//! Progress of a play, and its end time.
 
 use std::fmt;
 
@@ -7,12 +7,12 @@ use link_protocol::{StateName, Status, Telemetry};
 use super::answers::state;
 use crate::progress::Progress;
 
-/// A play under way, as the robot tells it.
+/// A play, according to the robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Playing {
     /// Cycles done, with the fraction of the present one.
     pub(super) done: f64,
-    /// Cycles asked for; `None`: without end.
+    /// Requested cycles; `None`: without end.
     pub(super) cycles: Option<u32>,
     /// Duration of a cycle, s; 0 before the first play.
     pub(super) period_s: f64,
@@ -42,7 +42,7 @@ impl Playing {
         Some((cycles - self.done).max(0.0) * self.period_s)
     }
 
-    /// How far it came, for a play that is over.
+    /// Progress of a play that is over.
     pub(super) fn so_far(&self) -> String {
         match self.cycles {
             _ if self.period_s <= 0.0 => "nothing played yet".to_owned(),
@@ -90,7 +90,7 @@ impl Shown {
         }
     }
 
-    /// The robot has told more.
+    /// Takes new telemetry.
     pub(super) fn tell(&mut self, telemetry: &Telemetry) {
         self.play = self.play.at(telemetry);
         if let Some(share) = self.play.share() {

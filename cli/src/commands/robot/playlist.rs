@@ -29,7 +29,7 @@ use crate::output::Output;
 use crate::progress::Progress;
 use crate::quantity;
 
-/// How a playlist was played.
+/// Result of a playlist.
 #[derive(Debug, Serialize)]
 struct PlayedAnswer {
     state: &'static str,
@@ -39,7 +39,7 @@ struct PlayedAnswer {
     /// Tables that were sent for them.
     tables: usize,
     duration_s: f64,
-    /// Where that leads, in the frame of the middle link as it lay at the start.
+    /// Predicted final pose, in the frame of the middle link at the start.
     foretold: Foretold,
 }
 

@@ -1,4 +1,4 @@
-//! What `--port` names, opened.
+//! Ports that `--port` may name.
 
 use std::io;
 use std::num::NonZeroU16;
@@ -20,10 +20,10 @@ pub(super) type AnyPort = Box<dyn Port>;
 /// The speed of the robot's serial line unless its firmware was built for another.
 pub(super) const BAUD: u32 = 115_200;
 
-/// How a fresh virtual robot keeps time.
+/// Clock of a fresh virtual robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Pace {
-    /// As fast as it can: for what ends by itself.
+    /// As fast as possible, for commands that end by themselves.
     AsFastAsPossible,
     /// In the operator's time: for what waits for the operator.
     RealTime,
@@ -32,24 +32,24 @@ pub(super) enum Pace {
 /// The names of fresh robots in a virtual tank, and what carries them.
 const FRESH: [(&str, Carrier); 2] = [("twin", Carrier::Twin), ("emulator", Carrier::Emulator)];
 
-/// Whether it names a serial port or a pseudo-terminal.
+/// `true` for the name of a serial port or a pseudo-terminal.
 pub(super) fn is_a_path(name: &str) -> bool {
     !name.starts_with("tcp:") && FRESH.iter().all(|(fresh, _)| *fresh != name)
 }
 
-/// What carries the fresh robot of this name, if it is one's.
+/// Kind of the fresh virtual robot with this name. Returns `None` for other names.
 pub(super) fn fresh(name: &str) -> Option<Carrier> {
     let mut fresh = FRESH.into_iter();
     fresh.find_map(|(known, carrier)| (known == name).then_some(carrier))
 }
 
-/// What a robot is greeted with, and a fresh virtual one made with.
+/// Settings for the greeting of a robot, and for a fresh virtual one.
 #[derive(Debug, Clone)]
 pub(super) struct Means {
     pub(super) pace: Pace,
     /// Speed of a serial line.
     pub(super) baud: u32,
-    /// How the robot is greeted.
+    /// Settings of the session.
     pub(super) session: SessionConfig,
     pub(super) board: EmulatedBoard,
 }
@@ -57,7 +57,7 @@ pub(super) struct Means {
 /// A port, opened.
 pub(super) struct Opened {
     pub(super) port: AnyPort,
-    /// What it was named by.
+    /// Name on the command line.
     pub(super) name: String,
 }
 

@@ -1,6 +1,6 @@
-//! One program has a serial port at a time. While a `swimmer` has the robot's port, another one of the same user can ask it,
-//! through a local socket named after the port, to stop the robot or to tell what it does, also again and again (`watch`): an operator in a hurry need not
-//! find the terminal that plays.
+//! Shared use of a port, which only one program can open. While a `swimmer` has the robot's port, another one of the same user
+//! can request, through a local socket named after the port, to stop the robot or to report its state, also repeatedly (`watch`):
+//! an operator in a hurry need not find the terminal that plays.
 //!
 //! ```text
 //!  swimmer robot play ──── port ──── robot          one line to the holder, two back:
@@ -9,13 +9,13 @@
 //!                                                    ← {"done": …, "text": …, "answer": …}
 //! ```
 //!
-//! The socket lies in a folder that only its user may enter. A thread of the holder says `heard` at once; the holder itself
-//! looks at what was asked at every beat (20 ms of waiting), also during an upload. The socket disappears with the holder, and
-//! one left behind by a crash is replaced.
+//! The socket is in a folder that only its user may enter. A thread of the holder acknowledges with `heard` at once; the holder
+//! serves the request at its next beat (20 ms of waiting), also during an upload. The socket is removed with the holder, and one
+//! left behind by a crash is replaced.
 //!
-//! A holder that hangs (suspended, or stuck in a driver) says nothing within a third of a second. A stop then goes past it: the
-//! port's lock binds only who looks at it, so that the stop is written beside the holder; where that cannot be (TCP), the
-//! holder is ended ([`take_over`]).
+//! A holder that hangs (suspended, or blocked in a driver) does not acknowledge within a third of a second. A stop then bypasses
+//! it: the port's lock is advisory, so the stop is written to the port directly; if that is impossible (TCP), the holder is ended
+//! ([`take_over`]).
 
 mod halt_signal;
 #[cfg(unix)]

@@ -33,8 +33,7 @@ pub(super) fn nothing_under_way(status: &Status) -> Outcome {
     )))
 }
 
-/// The same play once the robot has ramped to neutral and takes whatever is asked next, or as it was told where the link does
-/// not last that long.
+/// The same play after the robot has ramped to neutral and accepts further requests; unchanged if the link is lost before.
 pub(super) fn ready(line: &mut Line, over: Status) -> Status {
     let mut waited = Duration::ZERO;
     let mut now = over;
@@ -57,7 +56,7 @@ pub(super) fn stopped_on_failure<T>(
     robot: &mut Robot<AnyPort>,
     result: Result<T, LinkError>,
 ) -> Outcome<T> {
-    // One that has stopped by itself need not be told; it may be one that hears nothing.
+    // One that has stopped by itself needs no stop; it may not receive at all.
     if result
         .as_ref()
         .is_err_and(|error| !matches!(error, LinkError::StoppedEarly { .. }))

@@ -48,7 +48,7 @@ pub(crate) enum JointName {
     Back,
 }
 
-/// Which way a servo turns.
+/// Direction in which a servo turns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Sign {
     #[value(name = "+")]
@@ -70,7 +70,7 @@ impl From<JointName> for Joint {
     }
 }
 
-/// What a joint is called.
+/// Name of a joint.
 pub(super) fn name_of(joint: Joint) -> &'static str {
     match joint {
         Joint::Front => "front",
@@ -123,7 +123,7 @@ pub(super) struct Set {
 }
 
 impl Set {
-    /// What the robot says of its servo.
+    /// Asks the robot for the settings of its servo.
     ///
     /// # Errors
     /// The link's.

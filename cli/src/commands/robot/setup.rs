@@ -37,7 +37,7 @@ use crate::interrupt::Interrupt;
 use crate::output::{Output, aside};
 use crate::quantity;
 
-/// How far a joint is turned to be looked at, rad: 25°, within the largest trim.
+/// Angle of a joint during its inspection, rad: 25°, within the largest trim.
 const SWING: f64 = 0.436_332;
 /// From a command to a joint at rest: the way, and a little for the eye.
 const TO_TURN: Duration = Duration::from_millis(1_200);

@@ -1,5 +1,5 @@
-//! `swimmer robot stop` and `estop`: act first, ask afterwards. Where another `swimmer` has the port, it passes the stop on; where
-//! that one hangs, the stop goes past it.
+//! `swimmer robot stop` and `estop`: act first, ask afterwards. If another `swimmer` has the port, it passes the stop on; if that
+//! one hangs, the stop bypasses it.
 
 use std::io::{self, BufRead as _, IsTerminal as _};
 use std::thread::sleep;
@@ -18,7 +18,7 @@ use super::{Estop, Stop};
 use crate::failure::{Failure, Outcome};
 use crate::output::{Output, aside};
 
-/// Whether a stop may go past a `swimmer` that has the port and hangs.
+/// Permission to bypass a `swimmer` that has the port and hangs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum TakeOver {
     Yes,
@@ -49,7 +49,7 @@ pub(super) fn estop(access: &Access, arguments: &Estop, output: Output) -> Outco
     run(access, Ask::EStop, take_over, output)
 }
 
-/// Ends the latch; whatever follows is asked for again.
+/// Ends the latch; any motion afterwards needs a new request.
 fn clear(access: &Access, yes: bool, output: Output) -> Outcome {
     let mut line = access.connect("swimmer robot estop --clear", Pace::AsFastAsPossible)?;
     // Before the question: an e-stop that comes while the operator looks stays latched.
@@ -99,7 +99,7 @@ fn run(access: &Access, ask: Ask, take_over: TakeOver, output: Output) -> Outcom
         }
         match access.reach_named(Pace::AsFastAsPossible)? {
             Some(Reached::Free(opened)) => break stop_at_once(access, opened.port, estop)?,
-            // Another process has just taken the port: it can be asked now.
+            // Another process has just taken the port: the request can go to it.
             Some(Reached::Held(_)) if begun.elapsed() < TO_REST => sleep(LOOK_AGAIN),
             Some(Reached::Held(held_by)) => return Err(Failure::Tried(held_by.to_string())),
             None => {
@@ -129,7 +129,7 @@ fn stop_at_once(
     ))
 }
 
-/// Where the stop waits behind other bytes, the robot may have been quicker.
+/// Notes that the robot may have stopped by itself, if the stop had to wait behind other bytes.
 fn say_if_by_itself(by: StoppedBy) {
     if by != StoppedBy::Request {
         aside(&format!("{by}."));
@@ -172,7 +172,7 @@ fn confirmed(question: &str) -> bool {
     heard && matches!(answer.trim(), "y" | "Y" | "yes")
 }
 
-/// Stops the robot beside a holder that hangs, or ends that. `None`: it is ended, and the port is free.
+/// Stops the robot past a holder that hangs, or ends the holder. Returns `None` if it is ended and the port is free.
 fn past(
     access: &Access,
     held_by: &HeldBy,

@@ -31,7 +31,7 @@ struct Uploaded {
     gait: Gait,
     bytes: usize,
     seconds: f64,
-    /// What the upload was expected to take.
+    /// Predicted duration of the upload.
     predicted_seconds: f64,
     /// `null` for a gait of which nothing can be foretold.
     preflight: Option<Preflight>,
@@ -112,7 +112,7 @@ pub(super) fn run(access: &Access, arguments: &Upload, output: Output) -> Outcom
         }
         Err(failure) => return Err(failure),
     };
-    // What the robot sees, it refuses itself.
+    // The robot itself refuses the problems that it can detect.
     let unseen = preflight
         .as_ref()
         .and_then(|told| told.unseen_by_robot.as_ref());
@@ -193,11 +193,11 @@ struct Prepared {
     name: String,
     gait: AnyGait,
     table: GaitTable,
-    /// Where the gait comes from a file that says so: whose it is.
+    /// Swimmer that the gait was made for, if its file states one.
     made_for: Option<MadeFor>,
 }
 
-/// Whose a gait file says that it is.
+/// Swimmer that a gait file states.
 pub(super) struct MadeFor {
     pub(super) name: String,
     pub(super) hash: SwimmerHash,
@@ -241,7 +241,7 @@ impl Prepared {
 }
 
 impl MadeFor {
-    /// Whether the robot is the swimmer that the gait was made for, as far as its configuration tells.
+    /// Checks that the robot is the swimmer that the gait was made for, as far as its configuration shows.
     ///
     /// The robot knows its body in single precision, the gait file names the swimmer by a fingerprint: so the swimmer that
     /// both may mean is looked for among the presets and the one that the operator names.
@@ -305,7 +305,7 @@ pub(super) fn send_table(
             }
         });
         match sent {
-            // Another process asks; the upload goes on where it was.
+            // A request of another process: the upload continues.
             Err(LinkError::Interrupted { .. }) if !interrupt.requested() => holder.serve(robot),
             sent => return Ok(sent?),
         }

@@ -25,7 +25,7 @@ const LINE_EVERY: Duration = Duration::from_secs(1);
 /// Time between two pictures.
 const PICTURE_EVERY: Duration = Duration::from_millis(100);
 
-/// What to say when the process beside which this one watches ends.
+/// Message at the end of the process that had the port.
 const LET_GO: &str = "The program that had the port has let it go.";
 
 /// `swimmer robot watch`; at the end, for scripts, the status.
@@ -73,7 +73,7 @@ fn lines(
     Ok(())
 }
 
-/// Listens for so long on the port's clock, or until Ctrl-C.
+/// Listens for this time on the port's clock, or until Ctrl-C.
 pub(super) fn listen(
     line: &mut Line,
     end: Option<Duration>,
@@ -106,7 +106,7 @@ fn prepare(source: &mut Source) -> Outcome<Dashboard> {
     ))
 }
 
-/// What a key asks for.
+/// Action of a key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Wish {
     Leave,
@@ -153,7 +153,7 @@ fn show(
     let mut left = "Left the robot as it is.";
     loop {
         let beat = source.beat()?;
-        // Before the telemetry is told: what the robot has heard is held against what was sent by then.
+        // Before the telemetry is applied: the robot's counts are compared with the frames sent by then.
         (dashboard.link, dashboard.clock) = source.link();
         match beat {
             Beat::Telemetry(telemetry) => {

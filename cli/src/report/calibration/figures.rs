@@ -29,7 +29,7 @@ fn chart(labels: [&str; 2], size: (i32, i32), series: Vec<Series>) -> Chart {
     }
 }
 
-/// Where names were exchanged, and where a point was that is no reflector.
+/// Colours of exchanged names, and of points that are not reflectors.
 const SWAP: RGBColor = RGBColor(0xc0, 0x39, 0x6b);
 const GHOST: RGBColor = RGBColor(0xe0, 0xb0, 0x30);
 
@@ -107,7 +107,7 @@ pub(super) fn track(run: &RunResult) -> Outcome<String> {
     .svg()
 }
 
-/// Which of a cycle's coordinates.
+/// Coordinate of a cycle.
 #[derive(Clone, Copy)]
 pub(super) enum Coordinate {
     /// Across the first heading.
@@ -166,7 +166,7 @@ pub(super) fn cycles(run: &RunResult, coordinate: Coordinate) -> Outcome<String>
     chart(["fraction of the cycle", label], SMALL, series).svg()
 }
 
-/// `r_s` and χ with systematics beside the statistical intervals, as bars: (estimate, low, high) each.
+/// `r_s` and χ with systematics, next to the statistical intervals, as bars: (estimate, low, high) each.
 pub(super) fn bars(rows: &[(&str, [f64; 3])], label: &str) -> Outcome<String> {
     let mut series = Vec::new();
     let names: Vec<String> = rows.iter().map(|(name, _)| (*name).to_owned()).collect();
@@ -309,7 +309,7 @@ pub(super) fn profile(profile: &Profile, label: &str, unit: f64) -> Outcome<Stri
     chart([label, "log-likelihood ratio"], LOW, series).svg()
 }
 
-/// What is left of each run over its standard error, by the run's name.
+/// Residuals of each run over their standard errors, by the run's name.
 pub(super) fn residuals(evidence: &Evidence, names: &[String]) -> Outcome<String> {
     let count = evidence.run_errors.len() as f64;
     let band = |at: f64| Series::Dashes {

@@ -24,7 +24,7 @@ pub(crate) struct Calibration<'a> {
     pub(crate) systematics: Option<&'a Systematics>,
     pub(crate) options: EvidenceOptions,
     pub(crate) provenance: &'a Provenance,
-    /// What else lies in the folder: file name and what it holds.
+    /// Other files of the folder: name and contents.
     pub(crate) files: Vec<(&'static str, &'static str)>,
 }
 

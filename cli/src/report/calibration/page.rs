@@ -134,7 +134,7 @@ fn ways(calibration: &Calibration<'_>) -> Vec<Way> {
 }
 
 impl Way {
-    /// Its name beside a bar.
+    /// Label of the bar.
     fn word(&self) -> &'static str {
         match self.name {
             "the paper’s fit" => "paper",
@@ -157,7 +157,7 @@ fn interval([_, low, high]: &[f64; 3]) -> String {
     format!("{low:.digits$} … {high:.digits$}")
 }
 
-/// What is recommended stands out.
+/// Class that highlights a recommendation.
 fn main_class(is_recommended: bool) -> &'static str {
     if is_recommended { "main" } else { "" }
 }
@@ -239,7 +239,7 @@ fn over_amplitude(calibration: &Calibration<'_>) -> Outcome<Option<[String; 3]>>
 /// The runs' names without what their files end in, for axes.
 fn short_names(calibration: &Calibration<'_>) -> Vec<String> {
     let stem = |name: &str| {
-        // Of a run that was told, the line tells it from the others.
+        // Reported results are distinguished by their line.
         if let Some((file, line)) = name.rsplit_once(':') {
             let file = file.rsplit('/').next().unwrap_or(file);
             return format!("{}:{line}", file.split('.').next().unwrap_or(file));

@@ -10,15 +10,15 @@ use crate::raster::{gif, painted};
 use crate::report::drawing::{Anchor, Drawing};
 use crate::report::style::{AXIS, INK, Point, TITLE, WORDS, number};
 
-/// How many images are shown in a second.
+/// Frame rate.
 pub(crate) const FRAMES_PER_SECOND: u16 = 20;
 /// Width and height of the images, pixels.
 pub(crate) const SIZE: (u16, u16) = (640, 330);
 /// Images of the cycle: it takes three seconds.
 const FRAMES: u16 = 60;
-/// How long the last image stays, hundredths of a second.
+/// Duration of the last image, hundredths of a second.
 const STAY: u16 = 120;
-/// Where the body is drawn, and the plane of the joint angles: corner and size.
+/// Corner and size of the body's scene; those of the plane of the joint angles follow.
 const SCENE: [Point; 2] = [(16.0, 44.0), (390.0, 234.0)];
 const PLANE: (Point, f64) = ((460.0, 64.0), 164.0);
 

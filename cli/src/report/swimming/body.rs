@@ -16,12 +16,12 @@ const BREADTH: f64 = 0.026;
 pub(super) struct Window {
     /// Pixels of a metre.
     pub(super) scale: f64,
-    /// Where the origin lies.
+    /// Position of the origin.
     pub(super) origin: Point,
 }
 
 impl Window {
-    /// Shows these places, in the middle of a box that starts there and is that large; at most so many pixels a metre.
+    /// View of these places, centred in a box with this corner and size, with at most this many pixels per metre.
     pub(super) fn showing(
         places: &[Vector2<f64>],
         at: Point,
@@ -90,7 +90,7 @@ pub(super) fn covered(swimming: &Swimming, moment: &Moment) -> Vec<Vector2<f64>>
     links.chain(sphere).collect()
 }
 
-/// How a body is drawn.
+/// Style of a body.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Look {
     pub(super) color: RGBColor,

@@ -1,4 +1,4 @@
-//! The gait in the plane of the joint angles, small, beside the body that it moves.
+//! The gait in the plane of the joint angles, as a small plot next to the body.
 
 use plotters::style::RGBColor;
 

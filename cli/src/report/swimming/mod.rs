@@ -11,16 +11,16 @@ pub(crate) use snapshots::snapshots;
 use plotters::style::RGBColor;
 use swimmer_model::{Gait, Links, Model, Pose, Tolerance, trajectory};
 
-/// Where the body is and what shape it has, from the first instant to the last.
+/// Poses and shapes of the body, from the first instant to the last.
 #[derive(Debug, Clone)]
 pub(crate) struct Swimming {
-    /// On top of the picture; empty where a page tells it.
+    /// Title of the picture; empty if a page has it.
     pub(crate) title: String,
     /// Lengths of the links, m.
     pub(crate) links: Links<f64>,
     /// Radius of the sphere at the middle link's centre, m; 0 for none.
     pub(crate) sphere_radius: f64,
-    /// How many cycles are shown.
+    /// Number of cycles.
     pub(crate) cycles: u32,
     /// The instants, evenly spaced, both ends included; as many in each cycle.
     pub(crate) moments: Vec<Moment>,

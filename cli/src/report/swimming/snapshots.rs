@@ -8,7 +8,7 @@ use super::{Swimming, time_color};
 use crate::report::drawing::{Anchor, Drawing};
 use crate::report::style::{INK, Point, TITLE, WORDS};
 
-/// Width of the picture; where the swimmer is drawn; the plane of the joint angles beside it. Pixels of the page.
+/// Width of the picture; area of the swimmer; the plane of the joint angles next to it. Pixels of the page.
 const WIDTH: f64 = 900.0;
 const LEFT: f64 = 24.0;
 const SCENE: f64 = 590.0;
@@ -63,7 +63,7 @@ pub(crate) fn snapshots(swimming: &Swimming) -> String {
     drawing.svg()
 }
 
-/// Which instants are drawn: eighths of a single cycle, whole cycles of several.
+/// Instants of the snapshots: eighths of a single cycle, whole cycles of several.
 fn shown(swimming: &Swimming) -> Vec<usize> {
     let last = swimming.moments.len().saturating_sub(1);
     let cycles = usize::try_from(swimming.cycles.max(1)).unwrap_or(1);
@@ -142,7 +142,7 @@ fn scale_bar(drawing: &mut Drawing, swimming: &Swimming, scale: f64, y: f64) {
     drawing.words((right + 10.0, y + 5.0), WORDS, INK, Anchor::Start, &told);
 }
 
-/// What the colours mean.
+/// Legend of the colours.
 fn time_bar(drawing: &mut Drawing, swimming: &Swimming, y: f64) {
     let (left, width) = (PLANE.0, PLANE.1);
     let step = width / f64::from(PIECES);

@@ -38,7 +38,7 @@ impl Dashboard {
         );
     }
 
-    /// What the robot does, the most needed first.
+    /// Lines about the robot's state, the most important first.
     pub(super) fn state_lines(&self) -> Vec<Line<'_>> {
         let Some(telemetry) = &self.telemetry else {
             return vec![Line::from("no telemetry yet")];
@@ -167,7 +167,7 @@ impl Dashboard {
         frame.render_widget(canvas, area);
     }
 
-    /// Where the robot believes to have swum since the play began.
+    /// Path since the play began, by the robot's own prediction.
     pub(super) fn trail(&self, frame: &mut Frame<'_>, area: Rect) {
         let pose = self.telemetry.map_or_else(Pose::identity, |telemetry| {
             Pose::new(

@@ -1,4 +1,4 @@
-//! The drive of the chip's boot loader: where a computer puts it, how it is told from others, and what a copy onto it is.
+//! Drive of the chip's boot loader: its location, its detection, and the copy of an image onto it.
 
 use std::fs::{self, File};
 use std::io::{self, Write as _};
@@ -8,13 +8,13 @@ use std::time::{Duration, Instant};
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
 
-/// What every UF2 boot loader leaves on its drive.
+/// File on the drive of every UF2 boot loader.
 const NOTE: &str = "INFO_UF2.TXT";
 /// The RP2040's says this.
 const CHIP: &str = "Board-ID: RPI-RP2";
 const LOOK_AGAIN: Duration = Duration::from_millis(200);
 
-/// Whether a folder is the drive of an RP2040 in its boot loader.
+/// `true` if a folder is the drive of an RP2040 in its boot loader.
 pub(super) fn is_the_drive(folder: &Path) -> bool {
     fs::read_to_string(folder.join(NOTE)).is_ok_and(|note| note.contains(CHIP))
 }

@@ -1,4 +1,4 @@
-//! Another process that has the port: asked, and got past where it hangs.
+//! Another process that has the port: requests to it, and the way around it if it hangs.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -15,7 +15,7 @@ use super::socket::{HEARD, dial, folder, is_held, note, socket_name};
 use super::take_over;
 use crate::failure::{Failure, Outcome};
 
-/// A process that lives says at once that it has heard.
+/// Longest wait for the acknowledgement of a live process.
 const TO_BE_HEARD: Duration = Duration::from_millis(300);
 /// The robot's answer may need its five tries.
 const PATIENCE_WITH_HOLDER: Duration = Duration::from_secs(15);
@@ -34,7 +34,7 @@ pub(in super::super) struct HeldBy {
 }
 
 impl HeldBy {
-    /// Who has the port, where it is a `swimmer` of this user.
+    /// The process that has the port. Returns `None` unless it is a `swimmer` of this user.
     pub(in super::super) fn of(port: &str) -> Option<Self> {
         Self::of_in(&folder()?, port)
     }
@@ -71,7 +71,7 @@ impl HeldBy {
         })
     }
 
-    /// [`ask`](Self::ask), for who can do something about a process that hangs.
+    /// [`ask`](Self::ask) for a caller that can handle a process that hangs.
     ///
     /// # Errors
     /// [`Unanswered`].
@@ -135,7 +135,7 @@ impl HeldBy {
         &self.process
     }
 
-    /// A way to the robot beside that process; `None` where the port has no second one.
+    /// A second connection to the robot's device. Returns `None` if the port has none.
     pub(in super::super) fn beside(&self) -> Option<BesidePort> {
         take_over::beside(&self.port)
     }
@@ -192,7 +192,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let (place, port) = (folder.path(), "/dev/rfcomm7");
         assert!(HeldBy::of_in(place, port).is_none());
-        // What a killed process leaves: a socket that nobody listens at.
+        // Remains of a killed process: a socket without a listener.
         let path = place.join(socket_name(port).unwrap());
         drop(UnixListener::bind(&path).unwrap());
         assert!(path.exists() && HeldBy::of_in(place, port).is_none());
@@ -232,7 +232,7 @@ mod tests {
         );
     }
 
-    /// A suspended process takes no question, and those of before fill its queue: the next one must not wait for room in it.
+    /// A suspended process accepts no request, and earlier ones fill its queue: the next one must not wait for a place in it.
     #[test]
     fn a_holder_with_a_full_queue_hangs_at_once() {
         let folder = tempfile::tempdir().unwrap();
@@ -246,7 +246,7 @@ mod tests {
         assert!(begun.elapsed() < TO_BE_HEARD, "{:?}", begun.elapsed());
     }
 
-    /// Nobody serves: the process lives, and is told from one that hangs, but gives no answer.
+    /// A process that is alive but serves nobody is distinguished from one that hangs, and gives no reply.
     #[test]
     fn a_holder_that_hears_and_does_nothing_hangs_no_estop_for_long() {
         let folder = tempfile::tempdir().unwrap();

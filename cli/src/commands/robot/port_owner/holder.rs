@@ -1,4 +1,4 @@
-//! Who has the port: a socket, a thread that says at once that it has heard, and what was asked done at the next beat.
+//! Holder of the port: a socket, a thread that acknowledges requests at once, and a queue that is served at the next beat.
 
 use std::fs;
 use std::io::{self, BufRead, BufReader, Write};
@@ -18,15 +18,15 @@ use super::halt_signal::HaltSignal;
 use super::relay::{Ask, Relayed};
 use super::socket::{HEARD, folder, is_held, note, socket_name};
 
-/// A process that asks and says nothing is not waited for.
+/// Longest wait for the request of a process that has connected.
 const PATIENCE_WITH_ASKER: Duration = Duration::from_millis(50);
-/// How often the listening thread looks whether the holder is still there.
+/// Interval at which the listening thread checks if the holder has ended.
 const LISTEN: Timespec = Timespec {
     tv_sec: 0,
     tv_nsec: 100_000_000,
 };
 
-/// Holds the port, and hears what others ask.
+/// Holds the port, and receives the requests of other processes.
 pub(in super::super) struct Holder {
     open: Option<Open>,
     asked: Vec<(Ask, Asker)>,
@@ -37,7 +37,7 @@ pub(in super::super) struct Holder {
 pub(in super::super) struct Asker(UnixStream);
 
 impl Asker {
-    /// Answers. Whoever asked may have gone; what was asked is done.
+    /// Sends the reply. The other process may have ended; its request has been served.
     pub(in super::super) fn answer(mut self, answer: &Relayed) {
         let _ = serde_json::to_string(answer)
             .map_err(io::Error::other)
@@ -53,8 +53,8 @@ struct Open {
 }
 
 impl Holder {
-    /// Makes known that this process has the port, as `command`. Where no socket can be made (a system without a place for
-    /// it), the port is held all the same and others are only told that it is busy.
+    /// Announces that this process has the port, as `command`. If no socket can be made (on a system without a place for it), the
+    /// port is held nevertheless, and other processes only see that it is busy.
     pub(in super::super) fn announce(port: &str, command: &str) -> Self {
         Self::announce_in(folder().as_deref(), port, command)
     }
@@ -76,7 +76,7 @@ impl Holder {
         self.halts.clone()
     }
 
-    /// Whether somebody waits for something.
+    /// `true` if a request is waiting.
     pub(in super::super) fn asked(&mut self) -> bool {
         if let Some(open) = &self.open {
             self.asked.extend(open.heard.try_iter());
@@ -84,7 +84,7 @@ impl Holder {
         !self.asked.is_empty()
     }
 
-    /// What was asked and by whom, the most urgent first.
+    /// Requests with their senders, the most urgent first.
     pub(in super::super) fn take_asked(&mut self) -> Vec<(Ask, Asker)> {
         self.asked();
         self.asked.sort_by_key(|(ask, _)| *ask as u8);
@@ -94,7 +94,7 @@ impl Holder {
         std::mem::take(&mut self.asked)
     }
 
-    /// Does all that was asked.
+    /// Serves all requests.
     pub(in super::super) fn serve(&mut self, robot: &mut Robot<AnyPort>) {
         for (ask, asker) in self.take_asked() {
             asker.answer(&ask.of(robot));
@@ -103,7 +103,7 @@ impl Holder {
 }
 
 impl Open {
-    /// Listens at `path` from now on, in a thread: who asks hears at once that this process lives, whatever else it is at.
+    /// Listens at `path` in a thread, which acknowledges every request at once, whatever the process is doing.
     fn new(path: PathBuf, command: &str, halts: HaltSignal) -> io::Result<Self> {
         let listener = listen(&path, command)?;
         let (hears, heard) = mpsc::channel();
@@ -117,7 +117,7 @@ impl Open {
                         if let Some(halt) = ask.halt() {
                             halts.set(halt);
                         }
-                        // The holder may be leaving; then the stream is closed, and who asked looks again.
+                        // The holder may be ending; then the stream is closed, and the sender tries again.
                         let _ = hears.send((ask, Asker(stream)));
                     }
                 }
@@ -174,7 +174,7 @@ mod tests {
         stream.write_all(b"estop\n").unwrap();
         let mut said = String::new();
         BufReader::new(&stream).read_line(&mut said).unwrap();
-        // They were heard in order: what came before is not waiting either.
+        // They were acknowledged in order: none of the earlier ones is waiting either.
         assert_eq!(said.trim(), HEARD);
         while !holder.asked() {
             thread::yield_now();

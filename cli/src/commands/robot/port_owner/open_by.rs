@@ -1,8 +1,8 @@
-//! Which other program has a port open, where the system tells.
+//! Detection of another program that has a port open, if the system reports it.
 
 use std::path::Path;
 
-/// Name and process number of a program that has the port open; `None` where it cannot be told.
+/// Name and process number of a program that has the port open. Returns `None` if they are unknown.
 pub(in super::super) fn program_with(port: &str) -> Option<String> {
     let wanted = Path::new(port).canonicalize().ok()?;
     let us = std::process::id();

@@ -1,4 +1,4 @@
-//! What may be asked of the holder of a port, and the line that it answers with.
+//! Requests to the holder of a port, and the line of its reply.
 
 use std::fmt;
 
@@ -34,11 +34,11 @@ pub(in super::super) enum Ask {
     Status,
     /// Say which robot it is: [`Introduction`].
     Introduce,
-    /// Say what was heard of the robot last, without asking it anything: [`News`].
+    /// Report the last received state of the robot, without a request to the robot: [`News`].
     News,
 }
 
-/// Which robot the holder has, and what it was doing: where a screen beside the holder begins.
+/// The holder's robot and its state: the start of a screen in another process.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(in super::super) struct Introduction {
     pub(in super::super) board: Board,
@@ -62,7 +62,7 @@ impl Introduction {
     }
 }
 
-/// What is known of a robot and its link at this moment.
+/// State of a robot and its link.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub(in super::super) struct News {
     pub(in super::super) telemetry: Option<Telemetry>,
@@ -81,7 +81,7 @@ impl News {
 }
 
 impl Ask {
-    /// The stop that this asks for; `None` if it asks for something else.
+    /// The stop that this requests. Returns `None` for other requests.
     pub(in super::super) fn halt(self) -> Option<Halt> {
         match self {
             Self::Stop => Some(Halt::Stop),
@@ -134,7 +134,7 @@ pub(in super::super) enum Unanswered {
     Hangs,
 }
 
-/// An answer that crossed the socket: for people and for scripts, or why there is none.
+/// Reply over the socket: for people and for scripts, or the reason of a failure.
 #[derive(Debug, Serialize, Deserialize)]
 pub(in super::super) struct Relayed {
     pub(super) done: bool,
@@ -170,10 +170,10 @@ impl Relayed {
         }
     }
 
-    /// What the answer holds.
+    /// Contents of the reply.
     ///
     /// # Errors
-    /// [`Failure::Tried`] where it is something else: another version of this program has the port.
+    /// [`Failure::Tried`] if it has another form: another version of this program has the port.
     pub(in super::super) fn read<T: DeserializeOwned>(self) -> Outcome<T> {
         serde_json::from_value(self.answer).map_err(|error| {
             Failure::Tried(format!(

@@ -1,4 +1,4 @@
-//! Where the socket of a held port lies, and how it is reached.
+//! Socket of a held port: its path, and the connection to it.
 
 use std::fs::{self, DirBuilder};
 use std::io;
@@ -10,11 +10,11 @@ use link_protocol::crc32c;
 
 use super::super::port::fresh;
 
-/// What the holder says at once to whoever asks.
+/// Acknowledgement of the holder, sent at once.
 pub(super) const HEARD: &str = "heard";
 
-/// Connects, or says that whoever listens has no room for more questions: it takes none. (The standard library's way would
-/// wait for that.)
+/// Connects. Fails at once if the listener's queue is full, which means that it accepts nothing. (The standard library would wait
+/// for that.)
 pub(super) fn dial(path: &Path) -> io::Result<UnixStream> {
     use rustix::net::{AddressFamily, SocketAddrUnix, SocketType, connect, socket};
     let socket = socket(AddressFamily::UNIX, SocketType::STREAM, None)?;
@@ -26,7 +26,7 @@ pub(super) fn dial(path: &Path) -> io::Result<UnixStream> {
     Ok(stream)
 }
 
-/// Whether somebody listens there, with time for it or not.
+/// `true` if a process listens there, busy or not.
 pub(super) fn is_held(path: &Path) -> bool {
     match dial(path) {
         Ok(_) => true,
@@ -55,7 +55,7 @@ pub(super) fn socket_name(port: &str) -> Option<String> {
 /// Rights of anybody but the owner.
 const OTHERS: u32 = 0o077;
 
-/// Where this user's sockets lie: a folder that nobody else may enter.
+/// Folder of this user's sockets, which no other user may enter.
 pub(super) fn folder() -> Option<PathBuf> {
     let (base, name) = match std::env::var_os("XDG_RUNTIME_DIR") {
         Some(runtime) if Path::new(&runtime).is_dir() => {

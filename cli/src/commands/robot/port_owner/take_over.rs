@@ -12,7 +12,7 @@ use super::super::port::is_a_path;
 const TO_LET_GO: Duration = Duration::from_secs(1);
 const LOOK_AGAIN: Duration = Duration::from_millis(5);
 
-/// A way to the device beside the program that has it; `None` where the port is no device or lets nobody in.
+/// A second connection to the device. Returns `None` if the port is no device or cannot be opened twice.
 pub(super) fn beside(port: &str) -> Option<BesidePort> {
     if !is_a_path(port) {
         return None;
@@ -45,7 +45,7 @@ pub(super) fn end(process: &str, is_gone: impl Fn() -> bool) -> Result<(), Strin
     Ok(())
 }
 
-/// Whether the program that the process runs is this one, by its name: numbers of processes are used again.
+/// `true` if the process runs this program, by its name: process numbers are reused.
 fn is_a_swimmer(process: &str) -> bool {
     let ours = std::env::current_exe().ok();
     let ours = ours.as_deref().and_then(name_of).unwrap_or("swimmer");

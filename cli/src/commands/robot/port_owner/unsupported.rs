@@ -1,4 +1,4 @@
-//! Where the system has no local sockets: nobody is told, nobody can be asked, and no second program gets past the first.
+//! Systems without local sockets: no announcement, no requests, and no second program bypasses the first.
 
 use std::fmt;
 
@@ -10,7 +10,7 @@ use super::halt_signal::HaltSignal;
 use super::relay::{Ask, Relayed, Unanswered};
 use crate::failure::Outcome;
 
-/// Holds the port without telling.
+/// Holds the port without an announcement.
 pub(in super::super) struct Holder;
 
 impl Holder {
@@ -24,21 +24,21 @@ impl Holder {
         HaltSignal::default()
     }
 
-    /// Nobody asks.
+    /// Always `false`.
     pub(in super::super) fn asked(&mut self) -> bool {
         false
     }
 
-    /// Nobody asks.
+    /// Always empty.
     pub(in super::super) fn take_asked(&mut self) -> Vec<(Ask, Asker)> {
         Vec::new()
     }
 
-    /// Nobody asks.
+    /// Does nothing.
     pub(in super::super) fn serve(&mut self, _robot: &mut Robot<AnyPort>) {}
 }
 
-/// Another process that asks, which cannot be here.
+/// Process with a request. Unreachable on this platform.
 pub(in super::super) enum Asker {}
 
 impl Asker {

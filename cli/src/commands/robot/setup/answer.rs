@@ -1,4 +1,4 @@
-//! What a setup found and saved, for people and for scripts.
+//! Output of a set-up, for people and for scripts.
 
 use std::fmt;
 
@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::super::servo::Set;
 use crate::quantity;
 
-/// What was found and saved.
+/// Results of a set-up, found and saved.
 #[derive(Debug, Serialize)]
 pub(super) struct Done {
     pub(super) swimmer: String,

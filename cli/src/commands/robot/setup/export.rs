@@ -9,7 +9,7 @@ use swimmer_files::{SwimmerFile, write_atomically};
 use super::super::servo::Set;
 use crate::failure::{Failure, Outcome};
 
-/// Whether a file may be written there: where any may, and in place of the swimmer file that was named itself.
+/// Checks that a file may be written there: any that may be written, and the named swimmer file itself, which is replaced.
 ///
 /// # Errors
 /// [`Failure::BadInput`].

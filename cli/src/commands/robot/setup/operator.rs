@@ -1,7 +1,8 @@
-//! Dialogue with the operator at the bench: a question out, a line in, the link kept alive meanwhile. A script may give the
-//! answers.
+//! Dialogue with the operator at the bench: prints a question, reads a line, keeps the link alive meanwhile. A script may give
+//! the answers.
 //!
-//! Nothing moves on an answer that is not understood: a confirmation takes Enter or y alone, and asks again on anything else.
+//! Nothing moves after an answer that is not understood: a confirmation accepts Enter or y alone, and repeats the question
+//! otherwise.
 
 use std::io::{self, BufRead as _, IsTerminal as _};
 use std::str::FromStr;
@@ -105,7 +106,7 @@ impl Operator {
     /// Goes on only after Enter or y. `question` is answered by yes if it is safe to go on.
     ///
     /// # Errors
-    /// As [`ask`](Self::ask); [`Failure::Tried`] after n.
+    /// [`ask`](Self::ask)'s; [`Failure::Tried`] after n.
     pub(super) fn confirm(&self, line: &mut Line, armed: bool, question: &str) -> Outcome {
         let asked = format!("{question} [Enter or y: go on; n: leave]");
         let advice = "Nothing moves before Enter or y; n leaves the setup.";
@@ -120,7 +121,7 @@ impl Operator {
     /// Asks a question with two answers; an empty answer is `standard`.
     ///
     /// # Errors
-    /// As [`ask`](Self::ask).
+    /// [`ask`](Self::ask)'s.
     pub(super) fn yes(
         &self,
         line: &mut Line,
@@ -137,7 +138,7 @@ impl Operator {
     /// Waits with the link kept alive.
     ///
     /// # Errors
-    /// As [`ask`](Self::ask).
+    /// [`ask`](Self::ask)'s.
     pub(super) fn wait(&self, line: &mut Line, armed: bool, time: Duration) -> Outcome {
         let mut waited = Duration::ZERO;
         while waited < time {

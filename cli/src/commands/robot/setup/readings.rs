@@ -6,7 +6,7 @@
 
 use link_protocol::ServoSettings;
 
-/// What a protractor held over a link tells at best, rad.
+/// Best accuracy of a protractor over a link, rad.
 const READ_WITHIN: f64 = 0.052;
 /// Gains nearer to 1 are as built: a degree in each reading makes as much.
 const GAIN_WITHIN: f64 = 0.05;
@@ -24,24 +24,24 @@ pub(super) struct Readings {
     pub(super) after_high: f64,
 }
 
-/// What a servo is, against the map that it was read with.
+/// Properties of a servo, relative to the map that it was read with.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Found {
     /// It turns the other way.
     pub(super) mirrored: bool,
-    /// How far it turns for each angle that is commanded.
+    /// Actual over commanded angle.
     pub(super) gain: f64,
-    /// Where it stands when it is commanded straight, rad, free of its dead band.
+    /// Angle at the command 0, rad, without the effect of its dead band.
     pub(super) offset: f64,
     /// Half width of the dead band, rad.
     pub(super) dead_band: f64,
 }
 
 impl Readings {
-    /// What they say, where the joint was commanded to ±`swing` \[rad\].
+    /// Evaluates the readings of a joint that was commanded to ±`swing` \[rad\].
     ///
     /// # Errors
-    /// Why they cannot be those of a servo, as a sentence.
+    /// The reason why they cannot be those of a servo, as a sentence.
     pub(super) fn found(&self, swing: f64) -> Result<Found, String> {
         let degrees = f64::to_degrees;
         let lag = (self.after_high - self.after_low) / 2.0;
@@ -82,7 +82,7 @@ impl Readings {
 }
 
 impl Found {
-    /// The map with which the joint goes where it is told to, given the one that it was read with (without a trim).
+    /// The map with which the joint follows its command, given the one that it was read with (without a trim).
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // pulses of some ms; the wire's precision
     pub(super) fn settings(&self, before: &ServoSettings) -> ServoSettings {
         let gain = if self.is_as_built() { 1.0 } else { self.gain };
@@ -100,7 +100,7 @@ impl Found {
         }
     }
 
-    /// It turns as far as its map says, as well as a protractor tells.
+    /// `true` if it turns as its map states, within the accuracy of a protractor.
     pub(super) fn is_as_built(&self) -> bool {
         (self.gain - 1.0).abs() <= GAIN_WITHIN
     }
@@ -125,7 +125,7 @@ mod tests {
         trim: 0,
     };
 
-    /// What a servo with `truth` shows when it is commanded through `belief`, read to `grain`.
+    /// Readings of a servo with `truth` that is commanded through `belief`, with resolution `grain`.
     fn read(truth: ServoMap, dead_band: f64, belief: ServoMap, grain: f64) -> Readings {
         let plant = PlantParameters {
             max_rate: 3.5,

@@ -16,7 +16,7 @@ use crate::failure::{Failure, Outcome};
 use crate::quantity;
 
 impl Bench<'_> {
-    /// Whose lengths the robot has.
+    /// Swimmer whose lengths the robot has.
     pub(super) fn swimmer(&mut self, named: Option<SwimmerFile>) -> Outcome<SwimmerFile> {
         if let Some(file) = named {
             return Ok(file);

@@ -18,7 +18,7 @@ const KNOTS: usize = 64;
 const PATIENCE: Duration = Duration::from_secs(30);
 
 impl Bench<'_> {
-    /// Swings `joint` to the left and to the right end \[rad, the right one negative\], and asks.
+    /// Swings `joint` to the left and to the right end \[rad, the right one negative\], and reads the operator's answers.
     pub(super) fn swing(&mut self, joint: Joint, ends: [f64; 2]) -> Outcome {
         let [right, left] = ends;
         let table = GaitTable::from_fn(KNOTS, |u| {

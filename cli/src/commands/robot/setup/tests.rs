@@ -66,7 +66,7 @@ const PROMPTS: &[Prompt] = &[
     Prompt("Write a swimmer file", "", [AsksAgain, GoesOn, AsksAgain]),
 ];
 
-/// What a set-up with these answers came to.
+/// Result of a set-up with these answers.
 struct Left {
     /// Why it ended; `None` at its end.
     failure: Option<String>,

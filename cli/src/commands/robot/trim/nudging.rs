@@ -17,7 +17,7 @@ const COARSE_DEG: f64 = 1.0;
 /// Largest trim.
 const LARGEST_DEG: f64 = 30.0;
 
-/// What a key asks for.
+/// Action of a key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Wish {
     /// This joint's trim has changed.
@@ -36,7 +36,7 @@ pub(super) struct Nudging {
     before: [f64; 2],
     now: [f64; 2],
     joint: Joint,
-    /// What the robot does.
+    /// State of the robot.
     pub(super) state: Option<StateName>,
 }
 

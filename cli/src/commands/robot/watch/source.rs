@@ -1,4 +1,4 @@
-//! Where a watcher hears of the robot: over its own line, or from the process that has the port.
+//! Source of a watcher's telemetry: its own line, or the process that has the port.
 
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -20,13 +20,13 @@ const COMMAND: &str = "swimmer robot watch";
 /// Time between two questions to the process that has the port.
 const ASK_EVERY: Duration = Duration::from_millis(200);
 
-/// Where a watcher hears of the robot.
+/// Source of a watcher's telemetry.
 pub(super) enum Source<'a> {
     Own(Box<Line>),
     Holder(Box<Beside<'a>>),
 }
 
-/// Beside the process that has the port.
+/// Connection to the process that has the port.
 pub(super) struct Beside<'a> {
     access: &'a Access,
     introduction: Introduction,
@@ -35,13 +35,13 @@ pub(super) struct Beside<'a> {
     /// The robot's clock at the telemetry seen last, µs.
     seen_us: Option<u64>,
     heard: Instant,
-    /// A screen shows how long nothing was heard.
+    /// `true` if the screen shows the time since the last frame.
     shows_silence: bool,
     /// Nothing more is to be said of the present silence.
     silence_reported: bool,
 }
 
-/// What came of listening for a moment.
+/// Result of listening for one beat.
 pub(super) enum Beat {
     Telemetry(Telemetry),
     Nothing,
@@ -78,7 +78,7 @@ impl<'a> Source<'a> {
         })
     }
 
-    /// Which robot it is, and where: for a title.
+    /// Robot and port, for a title.
     ///
     /// # Errors
     /// The link's.
@@ -130,7 +130,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// How the link is.
+    /// Counters and clock of the link.
     pub(super) fn link(&self) -> (LinkCounters, Option<ClockFit>) {
         match self {
             Self::Own(line) => (line.robot.link_counters(), line.robot.clock()),
