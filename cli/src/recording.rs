@@ -1,9 +1,9 @@
-//! What a recording does not say itself, as flags of the commands that read one.
+//! Properties of a recording that its file does not state, as flags of the commands that read one.
 
 use calibrate::TrackOptions;
 use swimmer_files::Axes;
 
-/// What a recording does not say itself.
+/// Properties of a recording that its file does not state.
 #[derive(Debug, Clone, Default, clap::Args)]
 #[allow(clippy::doc_markdown)] // the help is for people: DeepLabCut, not `DeepLabCut`
 pub(crate) struct Recording {
@@ -22,7 +22,7 @@ pub(crate) struct Recording {
 }
 
 impl Recording {
-    /// The same for the reader.
+    /// Options of the reader.
     pub(crate) fn options(&self) -> TrackOptions {
         TrackOptions {
             metres_per_unit: self.scale,

@@ -20,7 +20,7 @@ use crate::output::aside;
 /// The host's end of a line to a robot that needs no hardware, in virtual time.
 pub(crate) type VirtualLine = VirtualPort<Box<dyn VirtualRobot>>;
 
-/// What carries the brain of a robot that needs no hardware.
+/// Implementation of a robot without hardware.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Carrier {
     /// This machine: the brain alone
@@ -29,7 +29,7 @@ pub(crate) enum Carrier {
     Emulator,
 }
 
-/// Which firmware the emulated robot runs, and on what.
+/// Firmware of the emulated robot, and its emulator.
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Emulated robot")]
 pub(crate) struct EmulatedBoard {
@@ -106,7 +106,7 @@ impl Carrier {
 }
 
 impl EmulatedBoard {
-    /// Where everything is: as named, else in the checkout around the working directory.
+    /// Paths of firmware and emulator: as named, else in the checkout around the working directory.
     fn config(&self) -> Outcome<BoardConfig> {
         let here = env::current_dir().map_err(|error| {
             Failure::Tried(format!(
@@ -129,7 +129,7 @@ impl EmulatedBoard {
     }
 }
 
-/// What becomes of a line of the firmware's log: all go to `file`, those that matter to whoever looks on.
+/// Handler of the firmware's log: all lines go to `file`, warnings and errors also to standard error.
 fn log_reader(file: Option<&Path>) -> Outcome<impl FnMut(&LogLine) + Send + 'static> {
     let mut file = file.map(new_log).transpose()?;
     Ok(move |line: &LogLine| {
@@ -158,7 +158,7 @@ fn new_log(place: &Path) -> Outcome<File> {
 }
 
 impl From<EmulatorError> for Failure {
-    /// What is not there can be named or installed; everything else was tried.
+    /// Missing files are bad input, since they can be named or installed; other errors are failures.
     fn from(error: EmulatorError) -> Self {
         match error {
             EmulatorError::Missing { .. } | EmulatorError::Node(_) => Self::bad_input(&error),

@@ -5,8 +5,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Callback for the completed fraction of the work, 0 to 1, called from any thread; it may start again from 0.
 pub type Watch<'a> = &'a (dyn Fn(f64) + Sync);
 
-/// Runs `job` for 0 … count − 1; each thread has its own workspace, made by `room`. The results are in order. `watch` receives
-/// the completed fraction of the jobs.
+/// Runs `job` for 0 … count − 1; each thread has its own workspace. The results are in order. `watch` receives the completed
+/// fraction of the jobs.
 pub(crate) fn in_parallel<R, T: Send>(
     count: usize,
     threads: usize,

@@ -12,7 +12,7 @@ const RECENT: usize = 512;
 const MOST_POINTS: usize = 256;
 /// A point jumps if it moves farther than this between two sightings \[m\],
 const JUMP_M: f64 = 0.02;
-/// and than so far per second \[m/s\]: robots that swim by their shape are slower by far.
+/// and than this distance per second \[m/s\]: robots that swim by their shape are much slower.
 const JUMP_SPEED: f64 = 0.5;
 /// Steps between stamps that are longer than the median by this factor have lost frames in them.
 const LOST: f64 = 1.5;

@@ -52,7 +52,7 @@ enum Chore {
     Flash {
         #[arg(long, default_value = "nano-connect")]
         board: Board,
-        /// As for `firmware`.
+        /// The same as for `firmware`.
         #[arg(long, value_name = "MILLI", value_parser = clap::value_parser!(u32).range(1000..))]
         battery_divider: Option<u32>,
     },

@@ -47,12 +47,12 @@ pub(crate) struct Arguments {
     /// Also tell what only an expert asks for: how an answer was found, what a search saw before it failed
     #[arg(long, global = true, help_heading = "Options of every command")]
     pub(crate) verbose: bool,
-    /// What to do.
+    /// Command to run.
     #[command(subcommand)]
     pub(crate) command: Command,
 }
 
-/// What `swimmer` can do; the help of each command stands at its arguments.
+/// Commands of `swimmer`; the help of each is at its arguments.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     Demo(demo::Demo),

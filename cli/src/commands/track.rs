@@ -18,13 +18,13 @@ use crate::output::Output;
 use crate::quantity::{Rows, Table};
 use crate::recording::Recording;
 
-/// A line for people so often \[s\].
+/// Interval between two lines for people \[s\].
 const LINE_EVERY_S: f64 = 1.0;
-/// Ctrl-C is looked at so often.
+/// Interval at which Ctrl-C is checked.
 const TURN: Duration = Duration::from_millis(100);
-/// A motion-capture system that replies and streams nothing for so long is not streaming \[s\].
+/// A motion-capture system that replies but streams nothing for this time is not streaming \[s\].
 const PATIENCE_S: f64 = 10.0;
-/// Places of so many points fit into a line.
+/// Number of points whose places fit into a line.
 const SHOWN_POINTS: usize = 4;
 
 /// Show what the cameras see, and record it: rate, points, latency, blanks, jumps
@@ -203,7 +203,7 @@ fn malformed(tallies: &Tallies) -> Option<String> {
     ))
 }
 
-/// What is seen now, in one line.
+/// Present state in one line.
 fn line(now_s: f64, survey: &Survey) -> String {
     let summary = survey.summary();
     let rate = summary

@@ -82,7 +82,7 @@ pub(crate) struct Twin {
 #[derive(Debug, Serialize)]
 struct Lived {
     seconds: f64,
-    /// An emulated robot tells of its cycles by its LED alone, which also says other things.
+    /// `None` for an emulated robot, whose cycles show only in its LED, which has other signals as well.
     cycles: Option<usize>,
     track: Option<String>,
     frames: Option<u64>,
@@ -273,7 +273,7 @@ fn open_terminal(link: &Path) -> Outcome<TcpPort> {
     )))
 }
 
-/// What an address stands for; whether one may listen there is seen later.
+/// Socket addresses of a text; listening there may still fail.
 fn addresses(text: &str) -> Outcome<Vec<SocketAddr>> {
     text.to_socket_addrs()
         .map(Iterator::collect)

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 use crate::binary::{command, typed};
 
-/// Where the packages were unpacked; none where they were not.
+/// Folder of the unpacked packages. Returns `None` if it does not exist.
 fn prefix() -> Option<PathBuf> {
     let target = Path::new(env!("CARGO_BIN_EXE_swimmer"))
         .ancestors()

@@ -241,7 +241,7 @@ fn reads_instead(row: &Row, instead: &str) -> String {
     })
 }
 
-/// What shall be written is there already.
+/// The output file exists already.
 fn finds_it_there(row: &Row) -> String {
     row.writes.map_or_else(none, |file| {
         let folder = laboratory();
@@ -275,7 +275,7 @@ fn interrupted(row: &Row) -> String {
             .is_some_and(|file| folder.path().join(file).exists());
         assert!(!left, "half-written: {ran}");
     }
-    // How far it came is the machine's affair: it was done, had begun nothing, or says that it was interrupted.
+    // The progress depends on the machine: it was done, had begun nothing, or reports the interruption.
     let interrupted = ran.status == 1 && ran.stderr.contains("nothing was kept");
     assert!(matches!(ran.status, 0 | -1) || interrupted, "{ran}");
     "done before, or ends and nothing is left".to_owned()
@@ -320,7 +320,7 @@ fn writes_onto_a_full_disk(row: &Row) -> String {
     })
 }
 
-/// As it works, with nothing to draw in colour; and the same into a pipe that nobody reads.
+/// A normal run without colours; and the same into a pipe without a reader.
 fn without_colour_or_reader(row: &Row) -> [String; 2] {
     let folder = laboratory();
     let mut command = made(folder.path(), &words(row, None));
@@ -347,7 +347,7 @@ fn without_colour_or_reader(row: &Row) -> [String; 2] {
     [told(row.words, &plain), plain.status.to_string()]
 }
 
-/// What a command says that is ended by Ctrl-C after a while.
+/// Output of a command that Ctrl-C ends after 1.5 s.
 fn ended(mut command: Command) -> Ran {
     command.stdin(Stdio::null());
     command.stdout(Stdio::piped()).stderr(Stdio::piped());

@@ -89,7 +89,7 @@ fn recordings_are_read_again() {
             "{name}"
         );
         assert!((number(&again, "rate_hz") - 50.0).abs() < 1e-3, "{again:#}");
-        // What is there stays.
+        // An existing file is not replaced.
         let refused = piped(folder.path(), &["-o", name], &script(3)).with_status(2);
         assert!(refused.stderr.contains("--overwrite"), "{refused}");
     }

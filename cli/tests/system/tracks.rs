@@ -29,7 +29,7 @@ fn every_format_is_told_by_name() {
         let words = [&["tracks", path.to_str().unwrap(), "--json"], rate].concat();
         let held = swimmer(&words).with_status(0).json();
         let format = held["format"].as_str().unwrap().to_owned();
-        // Exporters with a version of their own are told with it.
+        // The version of the exporter is part of the format.
         if let Some((_, version)) = name.trim_end_matches(".csv").split_once("-1.") {
             assert!(
                 format.ends_with(&format!("-1.{version}")),

@@ -15,7 +15,7 @@ const AMOUNTS: [f64; 7] = [1.0, 0.7, 0.5, 0.3, 0.2, 0.1, 0.05];
 const COORDINATES: usize = 3;
 /// Share of the full motion of a step that is added for an adjustment.
 const SMALL: f64 = 0.3;
-/// A chain that takes this much longer after an adjustment, and so many more cycles, is planned anew.
+/// Limits of an adjusted chain, in duration and cycles relative to the former one: beyond them it is planned anew.
 const LONGER: f64 = 1.1;
 const MORE_CYCLES: f64 = 4.0;
 /// A chain that leads so near to the target \[m, rad\] goes on without an adjustment.

@@ -107,7 +107,7 @@ impl Search<'_> {
         self.nets.of(&kind.of_scale(1.0))
     }
 
-    /// As if cycles could be cut anywhere: a real number of each.
+    /// Net pose for real numbers of cycles.
     fn roughly(&self, amounts: &DVector<f64>) -> Pose<f64> {
         let legs = self.word.iter().zip(amounts.iter());
         legs.fold(Pose::identity(), |sum, (kind, amount)| {
@@ -115,7 +115,7 @@ impl Search<'_> {
         })
     }
 
-    /// Whole cycles of members that bring the same; none where there are none.
+    /// Legs of whole cycles with the same net pose. Returns `None` without a solution.
     fn whole(&self, amounts: &DVector<f64>) -> Option<Vec<Step>> {
         let legs = self.word.iter().zip(amounts.iter());
         let legs = legs.filter(|(_, amount)| amount.abs() > 1e-9);
@@ -139,8 +139,8 @@ impl Search<'_> {
     }
 }
 
-/// These steps with scales that bring what is wanted, and with more cycles where a scale would be above 1; none where there
-/// are none. Of all that do those nearest to the steps' own; none larger than `largest`.
+/// These steps with scales for the wanted net pose, and with more cycles for scales above 1. The scales nearest to those of the
+/// steps are taken, none larger than `largest`. Returns `None` without a solution.
 pub(super) fn settled(
     nets: &Nets,
     wanted: &Pose<f64>,
@@ -184,7 +184,7 @@ pub(super) fn settled(
     None
 }
 
-/// A leg of so many cycles that brings about the same.
+/// A leg with this number of cycles and about the same net pose.
 pub(super) fn with_cycles(nets: &Nets, leg: &Step, cycles: u32) -> Step {
     let share = nets.share(&leg.member) * f64::from(leg.cycles) / f64::from(cycles);
     let member = Member {
@@ -219,8 +219,8 @@ pub(super) fn power(pose: &Pose<f64>, amount: f64) -> Pose<f64> {
     Pose::exp(&(twist * amount))
 }
 
-/// A zero of three functions near `start`, by damped steps with differences; none where they do not come near one. Of the steps
-/// that lead to a zero of the linear functions each is the shortest.
+/// A zero of three functions near `start`, by a damped Newton method with finite differences. Each step is the shortest solution
+/// of the linearised equations. Returns `None` if it does not converge.
 fn newton(start: DVector<f64>, of: impl Fn(&DVector<f64>) -> Vector3<f64>) -> Option<DVector<f64>> {
     const DIFFERENCE: f64 = 1e-6;
     let mut here = start;

@@ -38,7 +38,7 @@ impl Kind {
 /// A member of a family.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Member {
-    /// Which gait.
+    /// Gait of the family.
     pub kind: Kind,
     /// Run backwards: backward, right, turning right.
     pub backwards: bool,
@@ -188,7 +188,7 @@ impl Nets {
         }
     }
 
-    /// What is wanted takes about this long at least \[s\].
+    /// Approximate lower bound of the duration \[s\] of a chain with this net pose.
     pub(super) fn least(&self, wanted: &Pose<f64>) -> f64 {
         let (mut speed, mut rate) = (0.0_f64, 0.0_f64);
         for (kind, period) in Kind::ALL.into_iter().zip(self.periods) {
@@ -200,7 +200,7 @@ impl Nets {
         turned.max(wanted.position().norm() / speed)
     }
 
-    /// The scale at which a cycle brings this share of what it does at full size, along what that is.
+    /// Scale at which a cycle has this share of the full-size cycle's net motion, projected on the latter.
     pub(super) fn scale(&self, kind: Kind, share: f64) -> f64 {
         let (mut below, mut above) = (SMALLEST, 1.0);
         for _ in 0..24 {
@@ -214,7 +214,7 @@ impl Nets {
         above
     }
 
-    /// The share of what a cycle brings at full size that one of this member does, along what that is.
+    /// Share of the full-size cycle's net motion in that of this member's cycle, projected on the former.
     pub(super) fn share(&self, member: &Member) -> f64 {
         let [full, here] = [1.0, member.scale].map(|scale| self.of(&member.kind.of_scale(scale)));
         match member.kind {
@@ -225,14 +225,14 @@ impl Nets {
         }
     }
 
-    /// What some steps bring.
+    /// Net pose of some steps.
     pub(super) fn after(&self, steps: &[Step]) -> Pose<f64> {
         steps.iter().fold(Pose::identity(), |pose, step| {
             pose * repeated(&self.of(&step.member), step.cycles)
         })
     }
 
-    /// What a cycle of a member brings.
+    /// Net pose of a member's cycle.
     pub(super) fn of(&self, member: &Member) -> Pose<f64> {
         self.at_gain(member, self.gains[member.kind as usize])
     }
@@ -265,7 +265,7 @@ impl Nets {
     }
 }
 
-/// A pose so many times over.
+/// A pose to the power `times`.
 pub(super) fn repeated(pose: &Pose<f64>, times: u32) -> Pose<f64> {
     (0..times).fold(Pose::identity(), |sum, _| sum * *pose)
 }

@@ -15,7 +15,7 @@ use crate::losses::Servos;
 use crate::playlist::{PlaylistTable, tables};
 use crate::tank::Tank;
 
-/// Pairs of ways out that are tried if the walls leave no room for the largest cycles.
+/// Largest number of pairs of ways out, if the walls are too close for the largest cycles.
 const PAIRS: usize = 40;
 
 /// Plans to many targets with one family of gaits.

@@ -1,7 +1,7 @@
-//! Ways out: from a pose beside a wall, where only small cycles have room, to where larger ones have.
+//! Ways out: from a pose near a wall, at which only small cycles keep clear of it, to poses at which larger ones do.
 //!
-//! Every gait can be run backwards, so a way out of a target is a way into it. The tree of quickest ways (Dijkstra's) is grown,
-//! with the largest cycles that have room at each pose; the quickest way to every region of poses is told.
+//! Every gait can be run backwards, so a way out of a target is a way into it. The tree of quickest ways (Dijkstra's algorithm)
+//! is grown with the largest admissible cycles at each pose; the quickest way to every region of poses is returned.
 
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashSet};
@@ -13,15 +13,15 @@ use super::legs::LARGEST;
 use super::member::{Kind, Member};
 use super::room::{Sweeps, sizes};
 
-/// Poses are alike within \[m, rad\].
+/// Poses within these distances count as equal \[m, rad\].
 const ALIKE: [f64; 2] = [0.005, 0.05];
-/// Poses that are looked at.
+/// Largest number of poses that are expanded.
 const MOST: usize = 4000;
-/// Ways out that are told lead so far apart \[m, rad\].
+/// Least distance between the ends of the returned ways \[m, rad\].
 const APART: [f64; 2] = [0.04, 0.4];
-/// Ways out that are told.
+/// Largest number of returned ways.
 const WAYS: usize = 60;
-/// Cycles of a step; more only where so many have not led to another pose: the smallest cycles hardly swim.
+/// Cycles of a step; more only if these have not led to another pose, since the smallest cycles hardly swim.
 const CYCLES: u32 = 64;
 const MOST_CYCLES: u32 = 1024;
 
@@ -40,8 +40,8 @@ struct Node {
     duration: f64,
 }
 
-/// The ways out from this pose at the common shape, the shortest first: the first stays. Where the largest cycles have room it is
-/// the only one, unless there shall be ways `everywhere`.
+/// The ways out from this pose at the common shape, the shortest first: the first stays. If the largest cycles are admissible it
+/// is the only one, unless `everywhere` is set.
 pub(super) fn ways_out(sweeps: &Sweeps<'_>, begun: &Pose<f64>, everywhere: bool) -> Vec<Way> {
     let mut nodes = vec![Node {
         pose: *begun,

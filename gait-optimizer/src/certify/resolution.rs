@@ -156,8 +156,8 @@ fn zigzags(gait: &GaitFile) -> bool {
     changes.len() > ENOUGH && 2 * turns.count() > changes.len()
 }
 
-/// Adds the uncertainty due to the samples to each violated condition. `asked` computes the certificate for other samples of the
-/// same gait.
+/// Adds the uncertainty due to the samples to each violated condition. The callback computes the certificate for other samples of
+/// the same gait.
 pub(super) fn with_uncertainty(
     certificate: Certificate,
     gait: &GaitFile,

@@ -66,7 +66,7 @@ impl Seek for Growing {
 }
 
 impl LinkLogWriter {
-    /// Starts a log. What is there already is replaced with the first frame.
+    /// Starts a log. An existing file is replaced with the first frame.
     ///
     /// # Errors
     /// When the file cannot be made in its folder.

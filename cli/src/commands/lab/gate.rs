@@ -51,7 +51,7 @@ impl fmt::Display for Token {
     }
 }
 
-/// Resource that an accepted request asks for.
+/// Resource of an accepted request.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Wanted {
     /// The page, or only its head.

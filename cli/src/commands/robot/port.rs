@@ -23,7 +23,7 @@ pub(super) const BAUD: u32 = 115_200;
 /// Clock of a fresh virtual robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Pace {
-    /// As fast as possible, for commands that end by themselves.
+    /// Faster than real time, for commands that end by themselves.
     AsFastAsPossible,
     /// In the operator's time: for what waits for the operator.
     RealTime,

@@ -1,26 +1,26 @@
-//! The joints as one sees them at the bench: their angles, whenever they have come to rest elsewhere.
+//! Joint angles as an observer at the bench sees them, reported when the joints have come to rest at other angles.
 
 use std::time::Duration;
 
 use twin::World;
 
-/// Joints that stand so long are at rest.
+/// Duration of standing still that counts as rest.
 const AT_REST: Duration = Duration::from_millis(200);
-/// A turn that nobody sees, rad.
+/// Largest change of an angle that is not visible, rad.
 const UNSEEN: f64 = 1e-3;
 
-/// Both joints under somebody's eyes.
+/// Observed joints.
 #[derive(Debug, Default)]
 pub(super) struct Joints {
-    /// Where they are, and since when.
+    /// Present angles, and the time of the last change.
     now: [f64; 2],
     since: Duration,
-    /// Where they were at rest before.
+    /// Angles of the last report.
     told: Option<[f64; 2]>,
 }
 
 impl Joints {
-    /// Looks; a line where they have come to rest.
+    /// Observes the joints. Returns a line if they have come to rest at other angles.
     pub(super) fn look(&mut self, world: &World) -> Option<String> {
         let (at, angles) = (world.now(), world.angles());
         if apart(angles, self.now) {

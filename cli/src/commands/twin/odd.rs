@@ -1,4 +1,5 @@
-//! Servos that are not as the robot believes: mirrored, off-centre, of another slope. What a set-up at the bench must find.
+//! Servos that differ from the robot's map: mirrored, off-centre, of another slope. A set-up at the bench must find the
+//! differences.
 
 use std::str::FromStr;
 
@@ -6,7 +7,7 @@ use gait_player::servo::ServoMap;
 
 use crate::commands::robot::servo::{centre_us, nanoseconds};
 
-/// What sets one servo apart from those as built.
+/// Deviations of one servo from those as built.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Servo {
     joint: usize,

@@ -1,9 +1,9 @@
-//! Short extreme arcs beside the shape at which gaits join.
+//! Short extreme arcs near the shape at which gaits join.
 //!
-//! There the costate may jump, so that no neighbour tells which way a servo should turn on the arcs that end there: a polygon that
-//! leaves a short arc out polishes to a chain whose switching function has the wrong sign where it comes to that shape, or whose
-//! singular arc comes to a shape of other height than 0. A short extreme arc is faster then, with that servo turning the other way or,
-//! beside a singular arc, at full rate, and the polish gives it its length.
+//! There the costate may jump, so the neighbouring arcs do not determine the servo direction on the arcs that end there: a
+//! polygon without a short arc polishes to a chain whose switching function has the wrong sign at the end at that shape, or whose
+//! singular arc ends at a shape with nonzero height. Then a short extreme arc is faster, with that servo in the other direction
+//! or, next to a singular arc, at full rate; the polish determines its length.
 
 use nalgebra::Vector2;
 
@@ -13,12 +13,13 @@ use super::super::setting::Setting;
 use super::super::structure::{Link, Motion};
 use super::super::widened::SHORT;
 
-/// Switches that are put in.
+/// Largest number of inserted switches.
 pub(super) const MOST: usize = 3;
-/// Lengths of a new arc that are tried, over the shortest.
+/// Initial lengths of a new arc, over the shortest.
 const LENGTHS: [f64; 2] = [1.0, 16.0];
 
-/// The fastest of the chains with one more extreme arc just before gaits join, or just after; none where that is never faster.
+/// The fastest of the chains with one more extreme arc just before or just after the joint shape. Returns `None` if none is
+/// faster.
 pub(super) fn switched(setting: &Setting, chain: &Polished) -> Option<Polished> {
     let mut faster: Vec<Polished> = Vec::new();
     for length in LENGTHS {
@@ -34,8 +35,8 @@ pub(super) fn switched(setting: &Setting, chain: &Polished) -> Option<Polished> 
         .max_by(|a, b| a.speed.total_cmp(&b.speed))
 }
 
-/// The arcs with one more, extreme, that begins or ends where gaits join; none where the arc there is too short for it, or runs along
-/// a bound.
+/// The arcs with an additional extreme one that begins or ends at the joint shape. Returns `None` if the arc there is too short,
+/// or runs along a bound.
 fn with_switch(
     setting: &Setting,
     chain: &Polished,

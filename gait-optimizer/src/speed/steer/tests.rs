@@ -52,8 +52,8 @@ fn three_gaits_join_where_they_are_told_to() {
     assert!(steering.turn.net[2] > 0.05);
 }
 
-/// Certified or not, what is told can be played: no joint jumps, and none is faster than it can. Where a start leads to a chain that
-/// does, it is no gait; with few starts there may be no other.
+/// Certified or not, a returned gait can be played: no joint jumps, and no rate exceeds its limit. A start that leads to another
+/// chain gives no gait; with few starts there may be no other.
 #[test]
 fn gaits_that_join_straight_keep_their_rates() {
     let of_starts = |starts| {
@@ -84,8 +84,8 @@ fn a_shape_on_a_bound_is_refused() {
     assert!(matches!(error, SpeedError::Shape { .. }), "{error}");
 }
 
-/// What is certified passes as a file, run backwards too: of the gaits that begin at its first sample's shape, not of all. The forward
-/// gait switches just before that shape, where the costate jumps.
+/// A certified gait passes as a file, also in reverse: among the gaits that begin at its first sample's shape, not among all. The
+/// forward gait switches just before that shape, where the costate jumps.
 #[test]
 fn files_of_gaits_that_join_pass() {
     let swimmer = Swimmer::robot();
@@ -145,8 +145,8 @@ fn a_slower_gait_joins_where_the_fastest_lies_elsewhere() {
     certified_within(Swimmer::purcell(), 2.4, [1.68, 0.6], [0.01, 0.05, 0.01]);
 }
 
-/// Through this shape, far from where starts lead, the best sideways gait has a singular arc beside an extreme one that begins at the
-/// shape; without the extreme one it is no optimum.
+/// Through this shape, far from those that starts lead to, the best sideways gait has a singular arc next to an extreme one that
+/// begins at the shape; without the extreme one it is not optimal.
 #[test]
 fn a_singular_arc_begins_beside_the_shape() {
     certified_within(Swimmer::robot(), 1.5, [1.19, 0.525], [0.03, 0.02, 0.01]);

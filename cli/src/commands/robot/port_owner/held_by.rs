@@ -71,7 +71,7 @@ impl HeldBy {
         })
     }
 
-    /// [`ask`](Self::ask) for a caller that can handle a process that hangs.
+    /// Variant of [`ask`](Self::ask) for a caller that can handle a process that hangs.
     ///
     /// # Errors
     /// [`Unanswered`].

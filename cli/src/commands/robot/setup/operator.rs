@@ -106,7 +106,7 @@ impl Operator {
     /// Goes on only after Enter or y. `question` is answered by yes if it is safe to go on.
     ///
     /// # Errors
-    /// [`ask`](Self::ask)'s; [`Failure::Tried`] after n.
+    /// The errors of the dialogue; [`Failure::Tried`] after n.
     pub(super) fn confirm(&self, line: &mut Line, armed: bool, question: &str) -> Outcome {
         let asked = format!("{question} [Enter or y: go on; n: leave]");
         let advice = "Nothing moves before Enter or y; n leaves the setup.";
@@ -121,7 +121,7 @@ impl Operator {
     /// Asks a question with two answers; an empty answer is `standard`.
     ///
     /// # Errors
-    /// [`ask`](Self::ask)'s.
+    /// The errors of the dialogue.
     pub(super) fn yes(
         &self,
         line: &mut Line,
@@ -138,7 +138,7 @@ impl Operator {
     /// Waits with the link kept alive.
     ///
     /// # Errors
-    /// [`ask`](Self::ask)'s.
+    /// The errors of the dialogue.
     pub(super) fn wait(&self, line: &mut Line, armed: bool, time: Duration) -> Outcome {
         let mut waited = Duration::ZERO;
         while waited < time {
