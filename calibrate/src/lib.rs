@@ -79,7 +79,7 @@ mod prediction;
 mod quantities;
 mod run;
 mod sides;
-mod student;
+pub mod student;
 pub mod tracks;
 mod wrong_gait;
 

@@ -13,7 +13,7 @@ const HALVINGS: usize = 60;
 
 /// Half width of the central interval of this level, in standard errors. Returns `None` if the level is no share or the degrees
 /// of freedom are not positive.
-pub(crate) fn quantile(freedom: f64, level: f64) -> Option<f64> {
+pub fn quantile(freedom: f64, level: f64) -> Option<f64> {
     let tail = (1.0 - level) / 2.0;
     if !(tail > 0.0 && tail < 0.5 && freedom > 0.0) {
         return None;
@@ -42,7 +42,7 @@ pub(crate) fn quantile(freedom: f64, level: f64) -> Option<f64> {
 }
 
 /// Probability of a deviation of this many standard errors or more, to either side; NaN if either argument is NaN.
-pub(crate) fn two_sided(freedom: f64, deviation: f64) -> f64 {
+pub fn two_sided(freedom: f64, deviation: f64) -> f64 {
     if freedom.is_nan() || deviation.is_nan() {
         return f64::NAN;
     }

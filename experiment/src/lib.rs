@@ -16,6 +16,7 @@
 //!   [`Departure`] if the robot does not follow it.
 //! - [`Controller`]: drives to poses or holds a heading ([`Goal`]). After each cycle it chooses the next ([`Request`]) and learns
 //!   the robot's gains and drift; it ends with a named reason ([`Ending`]).
+//! - [`unattended`]: an experiment of many trials without an operator: plan, run, journal, comparison.
 //!
 //! All times of one loop are on one clock: that of the poses, which the caller maps to the host's clock.
 
@@ -26,6 +27,7 @@ mod fit;
 mod learning;
 mod monitor;
 mod pose;
+pub mod unattended;
 
 pub use clock::{Arrivals, ClockMatch, match_clocks};
 pub use controller::{Controller, Ending, Goal, Options, Request, Target};

@@ -3,4 +3,5 @@
 mod clock;
 mod go;
 mod monitor;
+mod unattended;
 mod virtual_lab;
