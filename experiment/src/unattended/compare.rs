@@ -133,7 +133,9 @@ pub fn compare(plan: &Plan, journal: &Journal) -> Comparison {
             interval_m: half_width(&numbers, plan.level),
             period_s: gait.period_s,
             speed_m_per_s: mean.map(|mean| mean / gait.period_s),
-            turn_rad: turns.get(gait.name.as_str()).and_then(|turns| self::mean(turns)),
+            turn_rad: turns
+                .get(gait.name.as_str())
+                .and_then(|turns| self::mean(turns)),
             runs: trials.len(),
             trials,
         }
@@ -264,7 +266,10 @@ mod tests {
         assert!((p - 0.006_618).abs() < 2e-6, "{p}");
         // t(0.975, 4) = 2.776445.
         let half = half_width(&[0.4, 0.1, 0.5, 0.2, 0.3], 0.95).unwrap();
-        assert!((half - 2.776_445 * 0.158_114 / 5_f64.sqrt()).abs() < 1e-6, "{half}");
+        assert!(
+            (half - 2.776_445 * 0.158_114 / 5_f64.sqrt()).abs() < 1e-6,
+            "{half}"
+        );
         assert!((one_sided(&[-0.4, -0.1, -0.5, -0.2, -0.3]).unwrap() - (1.0 - p)).abs() < 1e-12);
     }
 

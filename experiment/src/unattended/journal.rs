@@ -102,7 +102,9 @@ pub enum JournalError {
         problem: String,
     },
     /// It belongs to another plan.
-    #[error("line {line} of the journal belongs to another plan; run each plan in a folder of its own")]
+    #[error(
+        "line {line} of the journal belongs to another plan; run each plan in a folder of its own"
+    )]
     OtherPlan {
         /// Line, from 1.
         line: usize,
@@ -211,9 +213,8 @@ impl Journal {
     /// Trials of a plan that are neither finished nor given up, in their order.
     pub fn remaining<'a>(&self, plan: &'a Plan) -> Vec<&'a Trial> {
         let (finished, given_up) = (self.finished(), self.given_up());
-        let is_left = |trial: &&Trial| {
-            !finished.contains(&trial.number) && !given_up.contains(&trial.number)
-        };
+        let is_left =
+            |trial: &&Trial| !finished.contains(&trial.number) && !given_up.contains(&trial.number);
         plan.trials.iter().filter(is_left).collect()
     }
 
@@ -239,10 +240,13 @@ impl Journal {
 
     /// Measured cycles of each finished trial.
     pub fn measured(&self) -> BTreeMap<u32, &[MeasuredCycle]> {
-        let measured = self.records.iter().filter_map(|record| match &record.entry {
-            Entry::Finished { trial, cycles, .. } => Some((*trial, cycles.as_slice())),
-            _ => None,
-        });
+        let measured = self
+            .records
+            .iter()
+            .filter_map(|record| match &record.entry {
+                Entry::Finished { trial, cycles, .. } => Some((*trial, cycles.as_slice())),
+                _ => None,
+            });
         measured.collect()
     }
 
@@ -267,6 +271,9 @@ mod tests {
         assert_eq!(torn.records.len(), 1, "the last line may be torn");
         bytes.extend(Journal::line(0.0, &Entry::Complete));
         let error = Journal::parse(&bytes).unwrap_err();
-        assert!(matches!(error, JournalError::Damaged { line: 2, .. }), "{error}");
+        assert!(
+            matches!(error, JournalError::Damaged { line: 2, .. }),
+            "{error}"
+        );
     }
 }

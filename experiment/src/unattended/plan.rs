@@ -121,11 +121,13 @@ impl Plan {
 /// SHA-256 of some bytes, as 64 hexadecimal digits.
 pub(super) fn hexadecimal(bytes: &[u8]) -> String {
     use std::fmt::Write as _;
-    Sha256::digest(bytes).iter().fold(String::new(), |mut text, byte| {
-        // Writing to a String cannot fail.
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
+    Sha256::digest(bytes)
+        .iter()
+        .fold(String::new(), |mut text, byte| {
+            // Writing to a String cannot fail.
+            let _ = write!(text, "{byte:02x}");
+            text
+        })
 }
 
 /// Trials of these gaits in randomised complete blocks: each block is a random order of all gaits (Fisher–Yates shuffle). The same
@@ -213,7 +215,10 @@ mod tests {
             first[index.unwrap()] += 1;
         }
         // Binomial: 400 ± 18.
-        assert!(first.iter().all(|count| (310..490).contains(count)), "{first:?}");
+        assert!(
+            first.iter().all(|count| (310..490).contains(count)),
+            "{first:?}"
+        );
         assert_ne!(randomised(&names, 5, 1), randomised(&names, 5, 2));
     }
 }

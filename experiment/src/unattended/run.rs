@@ -19,7 +19,8 @@ use forecast::{Planner, Step};
 
 use super::{Entry, Journal, MeasuredCycle, Plan, StartPose, StopRules, Trial};
 use crate::{
-    Controller, Course, CycleReport, Ending, Goal, Likeness, Monitor, Options, Pose, Request as Drive,
+    Controller, Course, CycleReport, Ending, Goal, Likeness, Monitor, Options, Pose,
+    Request as Drive,
 };
 
 /// Poses in a row that must lie outside the margin: one may be wrong.
@@ -113,11 +114,15 @@ pub struct Run {
 enum Phase {
     Between,
     Going(Box<Controller>),
-    Settling { until_s: f64 },
+    Settling {
+        until_s: f64,
+    },
     Waiting,
     Playing(Box<Playing>),
     /// Stopping after an event that fails the trial.
-    Stopping { reason: String },
+    Stopping {
+        reason: String,
+    },
     Ended,
 }
 
@@ -227,8 +232,7 @@ impl Run {
             Phase::Going(controller) => controller.pose(pose),
             Phase::Playing(playing) => {
                 while playing.cycle() < playing.cycles
-                    && pose.time_s
-                        > playing.cycle_began_s() + playing.gait.period_s + LATE_POSES_S
+                    && pose.time_s > playing.cycle_began_s() + playing.gait.period_s + LATE_POSES_S
                 {
                     playing.next_cycle();
                 }
@@ -243,7 +247,11 @@ impl Run {
                     });
                 playing.outside = if is_outside { playing.outside + 1 } else { 0 };
             }
-            Phase::Between | Phase::Settling { .. } | Phase::Waiting | Phase::Stopping { .. } | Phase::Ended => {}
+            Phase::Between
+            | Phase::Settling { .. }
+            | Phase::Waiting
+            | Phase::Stopping { .. }
+            | Phase::Ended => {}
         }
     }
 
@@ -318,7 +326,10 @@ impl Run {
     }
 
     fn end(&mut self, ending: RunEnding) {
-        if matches!(self.phase, Phase::Waiting | Phase::Playing(_) | Phase::Stopping { .. }) {
+        if matches!(
+            self.phase,
+            Phase::Waiting | Phase::Playing(_) | Phase::Stopping { .. }
+        ) {
             self.requests.push_back(Request::EndTrack);
         }
         self.requests.push_back(Request::Write(match &ending {
@@ -374,9 +385,8 @@ impl Run {
     }
 
     fn lost(&mut self, seconds: f64) {
-        let reason = format!(
-            "the robot was not seen for {seconds:.1} s; check the cameras, then run again"
-        );
+        let reason =
+            format!("the robot was not seen for {seconds:.1} s; check the cameras, then run again");
         self.end(RunEnding::Interrupted(reason));
     }
 
@@ -434,7 +444,9 @@ impl Run {
     fn evaluate(&mut self, playing: &Playing) {
         let departure = playing.reports.last().and_then(blocking);
         if let Some(likeness) = departure {
-            self.failed(&format!("the robot departs from the prediction: {likeness}"));
+            self.failed(&format!(
+                "the robot departs from the prediction: {likeness}"
+            ));
             return;
         }
         let counted = playing.reports.iter().skip(self.plan.run_in as usize);

@@ -488,16 +488,43 @@ mod tests {
     #[test]
     fn mistakes_are_named_with_their_place() {
         let cases = [
-            (GOOD.replace("repeats = 2", "repeats = 0"), "s.toml:2:11: 0 is not"),
-            (GOOD.replace("width = 0.8", "width = -1.0"), "s.toml:3:1: length"),
-            (GOOD.replace("width", "wide"), "s.toml:5:1: unknown field `wide`"),
-            (GOOD.replace("circle", "cirle"), "s.toml:7:8: there is no gait"),
-            (format!("{GOOD}optimize = \"speed\"\n"), "s.toml:6:1: a [[gait]]"),
-            (format!("{GOOD}[[gait]]\ngait = \"circle:50deg\"\n"), "s.toml:8:1: two gaits"),
-            (format!("{GOOD}neighbours = 10\n"), "s.toml:8:14: 10 is no share"),
-            (format!("{GOOD}period = \"quick\"\n"), "s.toml:8:10: `quick`"),
+            (
+                GOOD.replace("repeats = 2", "repeats = 0"),
+                "s.toml:2:11: 0 is not",
+            ),
+            (
+                GOOD.replace("width = 0.8", "width = -1.0"),
+                "s.toml:3:1: length",
+            ),
+            (
+                GOOD.replace("width", "wide"),
+                "s.toml:5:1: unknown field `wide`",
+            ),
+            (
+                GOOD.replace("circle", "cirle"),
+                "s.toml:7:8: there is no gait",
+            ),
+            (
+                format!("{GOOD}optimize = \"speed\"\n"),
+                "s.toml:6:1: a [[gait]]",
+            ),
+            (
+                format!("{GOOD}[[gait]]\ngait = \"circle:50deg\"\n"),
+                "s.toml:8:1: two gaits",
+            ),
+            (
+                format!("{GOOD}neighbours = 10\n"),
+                "s.toml:8:14: 10 is no share",
+            ),
+            (
+                format!("{GOOD}period = \"quick\"\n"),
+                "s.toml:8:10: `quick`",
+            ),
             (format!("{GOOD}name = \"../a\"\n"), "s.toml:8:8: a name"),
-            (format!("{GOOD}[start]\nheading = 90\n"), "s.toml:9:11: 90 is no angle"),
+            (
+                format!("{GOOD}[start]\nheading = 90\n"),
+                "s.toml:9:11: 90 is no angle",
+            ),
         ];
         for (text, expected) in cases {
             let found = error(&text);
