@@ -11,7 +11,7 @@ use crate::fit::run_values::RunValues;
 use crate::fit::{self, CampaignFit, ExcludedRun, FitOptions, FitWarning};
 use crate::nuisance::scan;
 use crate::prediction::{Played, first_of_repeats};
-use crate::run::{EitherRun, Opposed, Run, Told, other_direction, same_recordings};
+use crate::run::{EitherRun, Opposed, ReportedRun, Run, other_direction, same_recordings};
 
 /// Rounds of fit and phase: the phase of a gait without the paper's symmetries hangs on the drag, a little.
 const ROUNDS: usize = 4;
@@ -131,7 +131,7 @@ fn begun<'a>(
     let begin = |index: usize| {
         let run = &campaign.runs[index];
         Some(if let Some(told) = &run.told {
-            Told::begin(index, (run, told), gaits.next()?, swimmer)
+            ReportedRun::begin(index, (run, told), gaits.next()?, swimmer)
                 .map(|run| EitherRun::Told(Box::new(run)))
         } else {
             Run::begin(tracked.next()?, index, &campaign.reflectors, swimmer)

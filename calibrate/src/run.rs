@@ -21,7 +21,7 @@ use crate::quantities::{QUANTITIES, predicted};
 
 pub(crate) use either::EitherRun;
 pub(crate) use same::same_recordings;
-pub(crate) use told::Told;
+pub(crate) use told::ReportedRun;
 
 /// One run's outcome.
 #[derive(Debug, Clone)]

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use swimmer_model::Swimmer;
 
-use super::{Opposed, Run, RunResult, Told, opposed};
+use super::{Opposed, ReportedRun, Run, RunResult, opposed};
 use crate::cycles::{Cycles, Projection};
 use crate::error::CalibrateError;
 use crate::fit::errors::RunErrors;
@@ -13,7 +13,7 @@ use crate::prediction::Played;
 /// A run with a track or with stated results.
 pub(crate) enum EitherRun<'a> {
     Tracked(Box<Run<'a>>),
-    Told(Box<Told>),
+    Told(Box<ReportedRun>),
 }
 
 impl EitherRun<'_> {

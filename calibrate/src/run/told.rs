@@ -12,7 +12,7 @@ use crate::poses::PoseTrack;
 use crate::prediction::Played;
 
 /// Stated results of a run, and its gait.
-pub(crate) struct Told {
+pub(crate) struct ReportedRun {
     index: usize,
     pub(super) file: PathBuf,
     pub(super) gait: String,
@@ -20,7 +20,7 @@ pub(crate) struct Told {
     pub(super) played: Played,
 }
 
-impl Told {
+impl ReportedRun {
     pub(crate) fn begin(
         index: usize,
         (run, told): (&CampaignRun, &ToldRun),
