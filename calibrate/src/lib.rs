@@ -96,7 +96,7 @@ pub use fit::{
     CampaignFit, ExcludedRun, Fit, FitOptions, FitWarning, Intervals, RunResidual, c_t_form,
 };
 pub use joints::{Measured, MeasuredJoints, MeasuredServo};
-pub use nuisance::{Further, FurtherFit, fit_further};
+pub use nuisance::{FurtherFit, NuisanceParameter, fit_further};
 pub use poses::{
     Drift, FollowReport, FrontRule, Jump, Origin, PoseError, PoseOptions, PoseSample, PoseTrack,
     PoseWarning, Stretch, poses, usual_reflectors,

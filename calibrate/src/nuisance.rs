@@ -17,7 +17,7 @@ use crate::least_squares::{Model as _, weighted};
 
 /// Parameter that can be fitted along with r_s and χ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Further {
+pub enum NuisanceParameter {
     /// c_t/μ, common to all links.
     TangentialDrag,
     /// A constant offset of each joint.
@@ -42,7 +42,7 @@ pub enum Further {
     Distortion,
 }
 
-impl Further {
+impl NuisanceParameter {
     /// All of them.
     pub const ALL: [Self; 11] = [
         Self::TangentialDrag,
@@ -223,7 +223,10 @@ pub struct FurtherFit {
 ///
 /// # Errors
 /// [`FitError::Undetermined`] where the data say nothing about some combination of them.
-pub fn fit_further(found: &CampaignFit, further: &[Further]) -> Result<FurtherFit, FitError> {
+pub fn fit_further(
+    found: &CampaignFit,
+    further: &[NuisanceParameter],
+) -> Result<FurtherFit, FitError> {
     let mut wanted = further.to_vec();
     wanted.sort_unstable();
     wanted.dedup();
@@ -235,7 +238,10 @@ pub fn fit_further(found: &CampaignFit, further: &[Further]) -> Result<FurtherFi
     if wanted.iter().any(|further| {
         matches!(
             further,
-            Further::JointOffsets | Further::Gains | Further::Lengths | Further::Tilt
+            NuisanceParameter::JointOffsets
+                | NuisanceParameter::Gains
+                | NuisanceParameter::Lengths
+                | NuisanceParameter::Tilt
         )
     }) {
         data = data.with_all();

@@ -3,7 +3,9 @@
 use crate::twin_campaigns;
 
 use calibrate::nuisance::{FittedParameter, FurtherFit, FurtherWarning};
-use calibrate::{CampaignFit, FitOptions, FitWarning, Further, calibrate_campaign, fit_further};
+use calibrate::{
+    CampaignFit, FitOptions, FitWarning, NuisanceParameter, calibrate_campaign, fit_further,
+};
 use swimmer_files::ServoFile;
 use twin_campaigns::Laboratory;
 
@@ -14,7 +16,7 @@ fn noticed(found: &CampaignFit) -> Option<(f64, f64)> {
     })
 }
 
-fn fitted(laboratory: &Laboratory, further: &[Further]) -> FurtherFit {
+fn fitted(laboratory: &Laboratory, further: &[NuisanceParameter]) -> FurtherFit {
     let (campaign, data) = laboratory.campaign();
     let found = calibrate_campaign(&campaign, &data, FitOptions::default()).unwrap();
     fit_further(&found, further).unwrap()
@@ -65,7 +67,7 @@ fn a_dead_band_is_noticed_and_fitted() {
             "{text}"
         );
 
-        let fit = fit_further(&found, &[Further::DeadBand]).unwrap();
+        let fit = fit_further(&found, &[NuisanceParameter::DeadBand]).unwrap();
         assert_holds(fit.parameter("dead band").unwrap(), truth);
         assert_holds(
             fit.parameter("r_s").unwrap(),
@@ -99,7 +101,7 @@ fn offsets_of_the_joints_are_found() {
         offsets: [0.05, -0.03],
         ..Laboratory::quiet(6)
     };
-    let fit = fitted(&laboratory, &[Further::JointOffsets]);
+    let fit = fitted(&laboratory, &[NuisanceParameter::JointOffsets]);
     assert_holds(fit.parameter("front joint offset").unwrap(), 0.05);
     assert_holds(fit.parameter("back joint offset").unwrap(), -0.03);
     assert!(fit.log_likelihood_gain > 10.0);
@@ -113,7 +115,7 @@ fn reflectors_beside_the_middle_are_found() {
     campaign.reflectors.front.at[0] += 0.03;
     campaign.reflectors.back.at[0] += 0.03;
     let found = calibrate_campaign(&campaign, &data, FitOptions::default()).unwrap();
-    let fit = fit_further(&found, &[Further::MarkerOffset]).unwrap();
+    let fit = fit_further(&found, &[NuisanceParameter::MarkerOffset]).unwrap();
     let along = fit.parameter("marker offset along").unwrap();
     assert_holds(along, -0.03);
     assert!(
@@ -130,7 +132,7 @@ fn a_small_sphere_cannot_be_told_from_the_tangential_drag() {
     let alike = |sphere_radius: f64| {
         let mut laboratory = Laboratory::quiet(8);
         laboratory.swimmer.sphere_radius = sphere_radius;
-        let fit = fitted(&laboratory, &[Further::TangentialDrag]);
+        let fit = fitted(&laboratory, &[NuisanceParameter::TangentialDrag]);
         println!(
             "r_s {sphere_radius}: {:?}\n{:?}\n{:?}",
             fit.parameters, fit.correlations, fit.warnings

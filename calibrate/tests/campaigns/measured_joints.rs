@@ -3,7 +3,7 @@
 use crate::judged;
 use crate::lab;
 
-use calibrate::{FitError, Further, Measured, Verdict, fit_further};
+use calibrate::{FitError, Measured, NuisanceParameter, Verdict, fit_further};
 use judged::Judged;
 use lab::{Faults, Lab};
 
@@ -69,15 +69,15 @@ fn the_command_alone_would_be_wrong() {
 fn what_is_measured_is_not_fitted() {
     let judged = Judged::of(&bad_servos(5)).unwrap();
     for (further, name) in [
-        (Further::Gain, "gain"),
-        (Further::DeadBand, "dead band"),
-        (Further::JointOffsets, "front joint offset"),
+        (NuisanceParameter::Gain, "gain"),
+        (NuisanceParameter::DeadBand, "dead band"),
+        (NuisanceParameter::JointOffsets, "front joint offset"),
     ] {
         let refused = fit_further(&judged.found, &[further]).unwrap_err();
         assert_eq!(refused, FitError::Measured { parameter: name });
         assert!(refused.to_string().contains("measured"), "{refused}");
     }
-    let scale = fit_further(&judged.found, &[Further::Scale]).unwrap();
+    let scale = fit_further(&judged.found, &[NuisanceParameter::Scale]).unwrap();
     let [low, high] = scale.parameter("camera scale").unwrap().interval;
     assert!(low < 1.0 && high > 1.0);
     let names = |name: &str| {

@@ -26,7 +26,7 @@ fn fitted(campaign: &Campaign, data: &CampaignData) -> CampaignFit {
     let assessment = assess(&found, Some(&evidence)).unwrap();
     println!("{:?} {:?}", assessment.verdict, assessment.reasons);
     advise(campaign, &found).unwrap();
-    let _ = fit_further(&found, &[calibrate::Further::Scale]);
+    let _ = fit_further(&found, &[calibrate::NuisanceParameter::Scale]);
     found
 }
 

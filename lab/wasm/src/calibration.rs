@@ -6,8 +6,8 @@ mod answers;
 mod data;
 
 use calibrate::{
-    Assessment, CampaignFit, Evidence, EvidenceOptions, FitOptions, Further, TrackOptions, advise,
-    assess, calibrate_campaign, fit_further, survey_tracks, weigh_evidence,
+    Assessment, CampaignFit, Evidence, EvidenceOptions, FitOptions, NuisanceParameter,
+    TrackOptions, advise, assess, calibrate_campaign, fit_further, survey_tracks, weigh_evidence,
 };
 use serde::Deserialize;
 use swimmer_files::Campaign;
@@ -97,7 +97,7 @@ fn further(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let Asked { number, also } = parsed(bytes)?;
     let fitted: &mut Fitted = lab.kept.get(number)?;
     let of_word = |word: &String| {
-        Further::of_word(word)
+        NuisanceParameter::of_word(word)
             .ok_or_else(|| format!("fitting `{word}` also: there is no such word"))
     };
     let wanted = also.iter().map(of_word).collect::<Result<Vec<_>, _>>()?;

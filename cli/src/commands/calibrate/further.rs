@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use calibrate::{Advice, CampaignFit, Further, FurtherFit, advise, fit_further};
+use calibrate::{Advice, CampaignFit, FurtherFit, NuisanceParameter, advise, fit_further};
 use clap::builder::{PossibleValuesParser, TypedValueParser as _};
 use serde::Serialize;
 use swimmer_files::Campaign;
@@ -19,8 +19,8 @@ pub(super) struct BeyondFit {
     /// both joints), deadband (of the servos), marker (where the reflectors' middle sits on the link), scale (of the cameras),
     /// lengths (of the links), float (its rotational drag over a sphere's), tilt (of the cameras), distortion (of the lens).
     /// Warns where the runs cannot tell them apart
-    #[arg(long, value_name = "WHAT,…", value_delimiter = ',', value_parser = PossibleValuesParser::new(Further::ALL.map(Further::word)).try_map(|word| further(&word)))]
-    fit_also: Vec<Further>,
+    #[arg(long, value_name = "WHAT,…", value_delimiter = ',', value_parser = PossibleValuesParser::new(NuisanceParameter::ALL.map(NuisanceParameter::word)).try_map(|word| further(&word)))]
+    fit_also: Vec<NuisanceParameter>,
     /// Rank what to measure next by how much one run of it would narrow the intervals
     #[arg(long)]
     advise: bool,
@@ -30,8 +30,8 @@ pub(super) struct BeyondFit {
 const FITTING: f64 = 1.6;
 const ADVISING: f64 = 0.9;
 
-fn further(word: &str) -> Result<Further, String> {
-    Further::of_word(word).ok_or_else(|| format!("there is no `{word}`"))
+fn further(word: &str) -> Result<NuisanceParameter, String> {
+    NuisanceParameter::of_word(word).ok_or_else(|| format!("there is no `{word}`"))
 }
 
 impl BeyondFit {
