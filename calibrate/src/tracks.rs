@@ -66,7 +66,7 @@ use std::path::Path;
 
 use swimmer_files::Axes;
 
-pub use error::{Place, TrackError, TrackProblem};
+pub use error::{FilePosition, TrackError, TrackProblem};
 pub use options::{TrackOptions, UsedPoints};
 pub use point::{PointKind, TrackPoint};
 pub use survey::{PointPresence, TrackSurvey};

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 /// A place in a file, 1-based; the column counts characters.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Place {
+pub struct FilePosition {
     /// The file.
     pub file: PathBuf,
     /// The line.
@@ -15,7 +15,7 @@ pub struct Place {
     pub column: usize,
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for FilePosition {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}:{}:{}", self.file.display(), self.line, self.column)
     }
@@ -28,7 +28,7 @@ pub enum TrackError {
     #[error("{place}: {problem}")]
     Broken {
         /// Where.
-        place: Place,
+        place: FilePosition,
         /// The problem.
         problem: TrackProblem,
     },
@@ -103,7 +103,7 @@ impl TrackError {
     }
 
     /// The place, where the error has one.
-    pub fn place(&self) -> Option<&Place> {
+    pub fn place(&self) -> Option<&FilePosition> {
         match self {
             Self::Broken { place, .. } => Some(place),
             _ => None,

@@ -4,7 +4,7 @@
 use std::io::{BufRead, Read};
 use std::path::Path;
 
-use super::{Place, TrackError, TrackProblem};
+use super::{FilePosition, TrackError, TrackProblem};
 
 /// The longest line \[bytes\]: four hundred thousand cells.
 const LONGEST: usize = 4 << 20;
@@ -77,7 +77,7 @@ impl Line<'_> {
     pub(super) fn error(&self, file: &Path, byte: usize, problem: TrackProblem) -> TrackError {
         let before = self.text.get(..byte).unwrap_or(self.text);
         TrackError::Broken {
-            place: Place {
+            place: FilePosition {
                 file: file.to_owned(),
                 line: self.number,
                 column: before.chars().count() + 1,

@@ -12,7 +12,7 @@ use super::number::Decimals;
 use super::rows::{TakesRows, read_rows};
 use super::timeline::Timeline;
 use super::{
-    Draft, Place, PointKind, Reading, TrackError, TrackFormat, TrackPoint, TrackProblem,
+    Draft, FilePosition, PointKind, Reading, TrackError, TrackFormat, TrackPoint, TrackProblem,
     TrackWarning, Unit,
 };
 
@@ -136,7 +136,7 @@ impl<'f> Reader<'f> {
         let mut rows = lines.head().filter(|line| !line.is_blank() && !multi(line));
         let (Some(names), Some(titles)) = (rows.next(), rows.next()) else {
             return Err(TrackError::Broken {
-                place: Place {
+                place: FilePosition {
                     file: file.to_owned(),
                     line: 2,
                     column: 1,

@@ -22,7 +22,7 @@ pub(super) fn read(lines: &mut Lines<'_>, reading: &Reading<'_>) -> Result<Draft
         .collect();
     let [first, keys, values, names, axes] = rows.as_slice() else {
         return Err(TrackError::Broken {
-            place: super::Place {
+            place: super::FilePosition {
                 file: file.to_owned(),
                 line: rows.len() + 1,
                 column: 1,

@@ -10,7 +10,7 @@ use super::lines::{Delimiter, Line, Lines};
 use super::number;
 use super::rotation::Rotation;
 use super::{
-    Draft, Place, PointKind, Reading, TrackError, TrackFormat, TrackPoint, TrackProblem,
+    Draft, FilePosition, PointKind, Reading, TrackError, TrackFormat, TrackPoint, TrackProblem,
     TrackWarning, Unit,
 };
 
@@ -29,7 +29,7 @@ pub(super) fn read(
         .collect();
     let [_, rate_line, names, axes, units] = rows.as_slice() else {
         return Err(TrackError::Broken {
-            place: Place {
+            place: FilePosition {
                 file: file.to_owned(),
                 line: rows.len() + 1,
                 column: 1,

@@ -8,7 +8,7 @@ use std::path::Path;
 use roxmltree::{Document, Node};
 
 use super::lines::{Line, Lines};
-use super::{Draft, Place, Reading, TrackError, TrackProblem};
+use super::{Draft, FilePosition, Reading, TrackError, TrackProblem};
 
 /// Most bytes of a document: its tree takes several times as much memory.
 const LARGEST: usize = 512 << 20;
@@ -30,7 +30,7 @@ pub(super) fn read(lines: &mut Lines<'_>, reading: &Reading<'_>) -> Result<Draft
     let document = Document::parse(&text).map_err(|cause| {
         let place = cause.pos();
         TrackError::Broken {
-            place: Place {
+            place: FilePosition {
                 file: reading.file.to_owned(),
                 line: place.row as usize,
                 column: place.col as usize,
@@ -82,7 +82,7 @@ impl Xml<'_> {
     fn error(&self, node: Node<'_, '_>, problem: TrackProblem) -> TrackError {
         let place = self.document.text_pos_at(node.range().start);
         TrackError::Broken {
-            place: Place {
+            place: FilePosition {
                 file: self.file.to_owned(),
                 line: place.row as usize,
                 column: place.col as usize,
