@@ -23,7 +23,7 @@ use super::{
     Unit, UsedPoints,
 };
 use body::{FramePose, RigidBody, Seen, owners};
-use record::{Place, Record};
+use record::{Coordinates, Record};
 
 /// Markers that a frame, or bodies that a file may have; more is a broken count.
 const MOST: usize = 100_000;
@@ -162,7 +162,7 @@ impl Reader {
         let id = record.cell(2).raw.to_owned();
         let mut offsets = Vec::with_capacity(markers);
         for marker in 0..markers {
-            if let Place::Seen(offset) = record.place(4 + 3 * marker)? {
+            if let Coordinates::Seen(offset) = record.place(4 + 3 * marker)? {
                 offsets.push(offset);
             }
         }
@@ -289,9 +289,9 @@ impl Reader {
 
     fn place(&mut self, record: &Record<'_>, at: usize) -> Result<Option<[f64; 3]>, TrackError> {
         Ok(match record.place(at)? {
-            Place::Seen(place) => Some(place),
-            Place::Missing => None,
-            Place::HalfBlank => {
+            Coordinates::Seen(place) => Some(place),
+            Coordinates::Missing => None,
+            Coordinates::HalfBlank => {
                 self.half_blank.get_or_insert((0, record.line())).0 += 1;
                 None
             }

@@ -10,7 +10,7 @@ use crate::tracks::rotation::Rotation;
 use crate::tracks::{TrackError, TrackProblem};
 
 /// Position by three coordinates.
-pub(super) enum Place {
+pub(super) enum Coordinates {
     /// All three are there.
     Seen([f64; 3]),
     /// None is.
@@ -113,7 +113,7 @@ impl<'r> Record<'r> {
     }
 
     /// Three coordinates; nothing where any of them is missing.
-    pub(super) fn place(&self, at: usize) -> Result<Place, TrackError> {
+    pub(super) fn place(&self, at: usize) -> Result<Coordinates, TrackError> {
         let mut place = [0.0; 3];
         let mut missing = 0;
         for ((value, field), axis) in place.iter_mut().zip(at..).zip(["x", "y", "z"]) {
@@ -125,9 +125,9 @@ impl<'r> Record<'r> {
             }
         }
         Ok(match missing {
-            0 => Place::Seen(place),
-            3 => Place::Missing,
-            _ => Place::HalfBlank,
+            0 => Coordinates::Seen(place),
+            3 => Coordinates::Missing,
+            _ => Coordinates::HalfBlank,
         })
     }
 
