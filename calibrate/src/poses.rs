@@ -30,7 +30,7 @@ use swimmer_model::{Pose, Swimmer, wrapped_angle};
 use crate::TrackFile;
 use assembly::Assembly;
 pub use error::PoseError;
-use fill::Seen;
+use fill::VisibleRow;
 pub use follow::{FollowReport, Stretch};
 pub use jumps::Jump;
 pub use plane::Plane;
@@ -200,7 +200,7 @@ impl PoseTrack {
     }
 
     /// If a reflector is given as the one nearer to a place, takes that one for its end.
-    fn settle_by_place(&mut self, reflectors: &Reflectors, first: &Seen) {
+    fn settle_by_place(&mut self, reflectors: &Reflectors, first: &VisibleRow) {
         let nearer = |place: [f64; 2]| {
             let to = |point: &Vector2<f64>| (point - Vector2::from(place)).norm();
             to(&first.front) < to(&first.back)
@@ -313,10 +313,10 @@ pub fn poses(
             share,
         });
     }
-    let mut seen: Vec<Seen> = followed
+    let mut seen: Vec<VisibleRow> = followed
         .rows
         .iter()
-        .map(|row| Seen {
+        .map(|row| VisibleRow {
             row: row.index,
             time_s: track.times.get(row.index).copied().unwrap_or(0.0),
             front: plane.project(&row.front),

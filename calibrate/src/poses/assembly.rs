@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use swimmer_files::Reflectors;
 use swimmer_model::{Pose, wrapped_angle};
 
-use super::fill::{Bridge, Seen, TAIL};
+use super::fill::{Bridge, TAIL, VisibleRow};
 use super::follow::Followed;
 use super::{Origin, Plane, PoseSample, pose_of};
 use crate::TrackFile;
@@ -19,7 +19,7 @@ pub(super) struct Assembly<'a> {
 }
 
 impl Assembly<'_> {
-    pub(super) fn samples(&self, seen: &[Seen]) -> Vec<PoseSample> {
+    pub(super) fn samples(&self, seen: &[VisibleRow]) -> Vec<PoseSample> {
         let mut samples: Vec<PoseSample> = Vec::with_capacity(seen.len());
         let mut push = |time_s: f64, mut pose: Pose<f64>, origin: Origin| {
             if let Some(last) = samples.last() {
@@ -63,7 +63,7 @@ impl Assembly<'_> {
     }
 
     /// The cubic over the gap before a sample, if there is one that may be filled.
-    fn bridge(&self, seen: &[Seen], after: usize) -> Option<Bridge> {
+    fn bridge(&self, seen: &[VisibleRow], after: usize) -> Option<Bridge> {
         let (before, next) = (seen.get(after.checked_sub(1)?)?, seen.get(after)?);
         let gap_s = next.time_s - before.time_s;
         let may = !next.begins
@@ -76,7 +76,7 @@ impl Assembly<'_> {
     fn fill(
         &self,
         bridge: &Bridge,
-        seen: &[Seen],
+        seen: &[VisibleRow],
         after: usize,
     ) -> Option<Vec<(f64, Pose<f64>, Origin)>> {
         let rows = seen.get(after.checked_sub(1)?)?.row + 1..seen.get(after)?.row;

@@ -21,7 +21,7 @@ const KNOTS: usize = 2;
 
 /// One row in which both reflectors were seen, in the plane.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Seen {
+pub(super) struct VisibleRow {
     /// Its row in the file.
     pub(super) row: usize,
     pub(super) time_s: f64,
@@ -34,8 +34,8 @@ pub(super) struct Seen {
 }
 
 /// Marks the samples next to gaps; returns their number.
-pub(super) fn mark_tails(seen: &mut [Seen]) -> usize {
-    let hidden = |pair: &[Seen]| match pair {
+pub(super) fn mark_tails(seen: &mut [VisibleRow]) -> usize {
+    let hidden = |pair: &[VisibleRow]| match pair {
         [a, b] => b.row - a.row > HIDDEN,
         _ => false,
     };
@@ -61,12 +61,12 @@ pub(super) struct Bridge {
 
 impl Bridge {
     /// `None` where there is no gap.
-    pub(super) fn over(seen: &[Seen], after: usize) -> Option<Self> {
+    pub(super) fn over(seen: &[VisibleRow], after: usize) -> Option<Self> {
         let (before, from) = (seen.get(after.checked_sub(1)?)?, seen.get(after)?);
         let gap_s = from.time_s - before.time_s;
         // As far again as the gap is long, and a tail.
         let lost = from.row - before.row;
-        let reach = |sample: &Seen, edge: &Seen| {
+        let reach = |sample: &VisibleRow, edge: &VisibleRow| {
             sample.row.abs_diff(edge.row) < TAIL + KNOTS * lost.max(KNOTS)
                 && (sample.time_s - edge.time_s).abs() < (KNOTS + TAIL) as f64 * gap_s
         };
@@ -95,9 +95,9 @@ impl Bridge {
 }
 
 /// The trusted ones of the samples on one side, or all where gaps follow so closely that none is.
-fn trusted<'a>(side: impl Iterator<Item = &'a Seen>) -> Vec<Seen> {
-    let all: Vec<Seen> = side.copied().collect();
-    let trusted: Vec<Seen> = all.iter().filter(|sample| !sample.tail).copied().collect();
+fn trusted<'a>(side: impl Iterator<Item = &'a VisibleRow>) -> Vec<VisibleRow> {
+    let all: Vec<VisibleRow> = side.copied().collect();
+    let trusted: Vec<VisibleRow> = all.iter().filter(|sample| !sample.tail).copied().collect();
     if trusted.is_empty() { all } else { trusted }
 }
 
@@ -105,11 +105,12 @@ fn trusted<'a>(side: impl Iterator<Item = &'a Seen>) -> Vec<Seen> {
 type Knot = (f64, Vector2<f64>, Vector2<f64>);
 
 /// Means of neighbouring samples, at most [`KNOTS`] of them, each as long as half the gap.
-fn blocks(samples: &[Seen], lost: usize) -> Vec<Knot> {
+fn blocks(samples: &[VisibleRow], lost: usize) -> Vec<Knot> {
     let size = (lost / 2).max(1);
-    let mean = |block: &[Seen]| {
+    let mean = |block: &[VisibleRow]| {
         let n = block.len() as f64;
-        let sum = |value: fn(&Seen) -> Vector2<f64>| block.iter().map(value).sum::<Vector2<f64>>();
+        let sum =
+            |value: fn(&VisibleRow) -> Vector2<f64>| block.iter().map(value).sum::<Vector2<f64>>();
         let time = block.iter().map(|sample| sample.time_s).sum::<f64>();
         (time / n, sum(|s| s.front) / n, sum(|s| s.back) / n)
     };
