@@ -4,7 +4,7 @@
 use super::cells::Cells;
 use super::grid::{decimals, may_be_cut};
 use super::lines::{Delimiter, Line, Lines};
-use super::merged::{Seen, merged};
+use super::merged::{TimedPose, merged};
 use super::number::{Decimals, Number};
 use super::rows::{TakesRows, read_rows};
 use super::timeline::Timeline;
@@ -41,7 +41,7 @@ struct Sections<'r> {
     cells: Cells,
     decimals: Decimals,
     timeline: Timeline,
-    tracks: Vec<(String, Vec<Seen>)>,
+    tracks: Vec<(String, Vec<TimedPose>)>,
     /// The comment that names the next section.
     name: Option<String>,
     /// `true` within a section.
@@ -109,7 +109,7 @@ impl Sections<'_> {
                 let problem = TrackProblem::TimeOrder { previous, time };
                 return Err(line.error(file, 0, problem));
             }
-            seen.push(Seen {
+            seen.push(TimedPose {
                 time_s: time,
                 place,
                 turn: None,

@@ -9,7 +9,7 @@ const SAME_FRAME: f64 = 0.25;
 
 /// A track's pose at a time.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Seen {
+pub(super) struct TimedPose {
     pub(super) time_s: f64,
     pub(super) place: [f64; 3],
     /// Orientation (x, y, z, w), if the file gives it.
@@ -19,10 +19,10 @@ pub(super) struct Seen {
 /// Tracks by name, each in the order of time; places in metres if a unit has `metres`.
 pub(super) fn merged(
     mut timeline: Timeline,
-    tracks: Vec<(String, Vec<Seen>)>,
+    tracks: Vec<(String, Vec<TimedPose>)>,
     metres: f64,
 ) -> Body {
-    let seen = |(_, seen): &(String, Vec<Seen>)| {
+    let seen = |(_, seen): &(String, Vec<TimedPose>)| {
         let times = seen.iter().map(|seen| seen.time_s);
         times.filter(|time| time.is_finite()).collect()
     };
@@ -53,7 +53,7 @@ pub(super) fn merged(
         if seen.iter().any(|seen| seen.turn.is_some()) {
             point = point.oriented();
         }
-        for Seen {
+        for TimedPose {
             time_s,
             place,
             turn,

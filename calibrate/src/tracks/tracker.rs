@@ -7,7 +7,7 @@ use std::path::Path;
 use super::cells::{Cell, Cells, cell_at, split};
 use super::grid::{self, Body, Clock, Columns, Grid, decimals, may_be_cut, row_length};
 use super::lines::{Delimiter, Line, Lines};
-use super::merged::{Seen, merged};
+use super::merged::{TimedPose, merged};
 use super::number::Decimals;
 use super::rows::{TakesRows, read_rows};
 use super::timeline::Timeline;
@@ -23,7 +23,7 @@ struct Track {
     /// x and y; `None` for a track of other quantities.
     place: Option<[usize; 2]>,
     /// With the row that it was on.
-    seen: Vec<(usize, Seen)>,
+    seen: Vec<(usize, TimedPose)>,
 }
 
 /// # Errors
@@ -294,7 +294,7 @@ impl<'f> Reader<'f> {
             let stamp = stamp.and_then(|clock| stamps.get(clock).copied().flatten());
             let place = (self.value(line, x, "x")?, self.value(line, y, "y")?);
             places.push(match (stamp, place) {
-                (Some(time_s), (Some(x), Some(y))) => Some(Seen {
+                (Some(time_s), (Some(x), Some(y))) => Some(TimedPose {
                     time_s,
                     place: [x, y, 0.0],
                     turn: None,

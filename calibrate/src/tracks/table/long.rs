@@ -8,7 +8,7 @@ use crate::tracks::cells::{Cell, Cells, split};
 use crate::tracks::detect::TableLayout;
 use crate::tracks::grid::{Clock, Columns, decimals, may_be_cut, row_length};
 use crate::tracks::lines::{Line, Lines};
-use crate::tracks::merged::{Seen, merged};
+use crate::tracks::merged::{TimedPose, merged};
 use crate::tracks::number::{Decimals, Number};
 use crate::tracks::rows::{TakesRows, read_rows};
 use crate::tracks::stamp::Stamp;
@@ -203,7 +203,7 @@ struct LongRows<'r> {
     cells: Cells,
     timeline: Timeline,
     ids: HashMap<String, usize>,
-    tracks: Vec<(String, Vec<Seen>)>,
+    tracks: Vec<(String, Vec<TimedPose>)>,
     rows: usize,
     last_decimals: usize,
     extent: Option<usize>,
@@ -273,7 +273,7 @@ impl TakesRows for LongRows<'_> {
             self.tracks.len() - 1
         });
         if let Some((_, seen)) = self.tracks.get_mut(track) {
-            seen.push(Seen {
+            seen.push(TimedPose {
                 time_s,
                 place,
                 turn,

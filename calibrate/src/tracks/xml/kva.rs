@@ -3,7 +3,7 @@
 use roxmltree::Node;
 
 use super::{Xml, child, children};
-use crate::tracks::merged::{Seen, merged};
+use crate::tracks::merged::{TimedPose, merged};
 use crate::tracks::stamp::Stamp;
 use crate::tracks::timeline::Timeline;
 use crate::tracks::{Draft, Reading, TrackError, TrackFormat, TrackProblem, Unit};
@@ -15,7 +15,7 @@ pub(super) fn read(
 ) -> Result<Draft, TrackError> {
     let clock = Clock::of(root);
     let mut timeline = Timeline::new(reading.keeps_places);
-    let mut tracks: Vec<(String, Vec<Seen>)> = Vec::new();
+    let mut tracks: Vec<(String, Vec<TimedPose>)> = Vec::new();
     let mut own = None;
     for track in children(child(root, "Tracks").unwrap_or(root), "Track") {
         // Older versions call them positions.
@@ -32,7 +32,7 @@ pub(super) fn read(
         let points = list.children().filter(Node::is_element);
         let mut seen = points
             .map(|point| clock.seen(xml, point, &mut timeline))
-            .collect::<Result<Vec<Seen>, TrackError>>()?;
+            .collect::<Result<Vec<TimedPose>, TrackError>>()?;
         seen.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
         tracks.push((name(track, tracks.len()), seen));
     }
@@ -96,7 +96,7 @@ impl Clock {
         xml: &Xml<'_>,
         point: Node<'_, '_>,
         timeline: &mut Timeline,
-    ) -> Result<Seen, TrackError> {
+    ) -> Result<TimedPose, TrackError> {
         let axis = |invariant: &str, plain: &str| {
             let name = if point.has_attribute(invariant) {
                 invariant
@@ -134,7 +134,7 @@ impl Clock {
             Some(time_s) => time_s,
             None => xml.number(point, "UserTime")?,
         };
-        Ok(Seen {
+        Ok(TimedPose {
             time_s,
             place,
             turn: None,

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use roxmltree::Node;
 
 use super::{Xml, child, children};
-use crate::tracks::merged::{Seen, merged};
+use crate::tracks::merged::{TimedPose, merged};
 use crate::tracks::timeline::Timeline;
 use crate::tracks::{Draft, Reading, TrackError, TrackFormat, TrackProblem, Unit};
 
@@ -29,7 +29,7 @@ pub(super) fn exported(
     let tracks = particles.map(|(particle, index)| {
         let detections = children(particle, "detection")
             .map(|detection| seen(xml, detection, ["t", "x", "y"], frame_s));
-        let seen: Vec<Seen> = detections.collect::<Result<_, TrackError>>()?;
+        let seen: Vec<TimedPose> = detections.collect::<Result<_, TrackError>>()?;
         Ok((format!("{index}"), seen))
     });
     let tracks = tracks.collect::<Result<Vec<_>, TrackError>>()?;
@@ -57,7 +57,7 @@ pub(super) fn whole(
         reading,
         seconds.zip(interval).map(|(s, i)| s * i),
     )?;
-    let mut spots: HashMap<&str, Seen> = HashMap::new();
+    let mut spots: HashMap<&str, TimedPose> = HashMap::new();
     for frame in child(model, "AllSpots")
         .into_iter()
         .flat_map(|all| children(all, "SpotsInFrame"))
@@ -82,7 +82,7 @@ pub(super) fn whole(
             .or_else(|| track.attribute("TRACK_ID"));
         tracks.push((
             name.unwrap_or("track").to_owned(),
-            edges.collect::<Vec<Seen>>(),
+            edges.collect::<Vec<TimedPose>>(),
         ));
     }
     draft(
@@ -114,8 +114,8 @@ fn seen(
     node: Node<'_, '_>,
     [frame, x, y]: [&str; 3],
     frame_s: f64,
-) -> Result<Seen, TrackError> {
-    Ok(Seen {
+) -> Result<TimedPose, TrackError> {
+    Ok(TimedPose {
         time_s: xml.number(node, frame)? * frame_s,
         place: [xml.number(node, x)?, xml.number(node, y)?, 0.0],
         turn: None,
@@ -131,7 +131,7 @@ fn seconds(unit: &str) -> Option<f64> {
     })
 }
 
-type Parts<'a> = (Vec<(String, Vec<Seen>)>, Option<&'a str>, f64);
+type Parts<'a> = (Vec<(String, Vec<TimedPose>)>, Option<&'a str>, f64);
 
 fn draft(
     xml: &Xml<'_>,
