@@ -22,7 +22,7 @@ use super::{
     Draft, PointKind, Reading, TrackError, TrackFormat, TrackPoint, TrackProblem, TrackWarning,
     Unit, UsedPoints,
 };
-use body::{FramePose, RigidBody, Seen, owners};
+use body::{FramePose, RigidBody, TrackedBodies, owners};
 use record::{Coordinates, Record};
 
 /// Markers that a frame, or bodies that a file may have; more is a broken count.
@@ -87,7 +87,7 @@ struct Reader {
     bodies: Vec<RigidBody>,
     /// Poses of the frame whose records are being read, and what these say of the bodies' markers.
     poses: Vec<FramePose>,
-    seen: Seen,
+    seen: TrackedBodies,
     /// Poses that went to a body of another number, and poses that no body's markers explain.
     renumbered: (usize, usize),
     /// `true` if no body was defined before the first frame.
@@ -113,7 +113,7 @@ impl Reader {
             points: Vec::new(),
             bodies: Vec::new(),
             poses: Vec::new(),
-            seen: Seen::default(),
+            seen: TrackedBodies::default(),
             renumbered: (0, 0),
             undefined: false,
             markers: HashMap::new(),

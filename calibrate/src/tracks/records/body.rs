@@ -52,14 +52,14 @@ pub(super) struct FramePose {
 
 /// Markers in the extended records of a frame.
 #[derive(Default)]
-pub(super) struct Seen {
+pub(super) struct TrackedBodies {
     /// Tracked bodies by their index, and the mean of their markers' solved places.
     tracked: Vec<(usize, Vector3<f64>)>,
     /// `true` if there was any record.
     any: bool,
 }
 
-impl Seen {
+impl TrackedBodies {
     /// Adds a body's record; `solved` are its markers' places if it is tracked.
     pub(super) fn add(&mut self, body: usize, solved: &[[f64; 3]]) {
         self.any = true;
@@ -71,7 +71,11 @@ impl Seen {
 
 /// The body of each pose: by its markers if the frame has extended records, else by its number. `None` for a pose that
 /// belongs to no body.
-pub(super) fn owners(poses: &[FramePose], bodies: &[RigidBody], seen: &Seen) -> Vec<Option<usize>> {
+pub(super) fn owners(
+    poses: &[FramePose],
+    bodies: &[RigidBody],
+    seen: &TrackedBodies,
+) -> Vec<Option<usize>> {
     if !seen.any {
         let by_id = |pose: &FramePose| bodies.iter().position(|body| body.id == pose.id);
         return poses.iter().map(by_id).collect();
@@ -133,7 +137,7 @@ mod tests {
             turn: Some([0.0, 0.5_f64.sqrt(), 0.0, 0.5_f64.sqrt()]),
         };
         let poses = [pose("2", 0.5), pose("1", 2.0), pose("3", 9.0)];
-        let mut seen = Seen::default();
+        let mut seen = TrackedBodies::default();
         assert_eq!(owners(&poses, &bodies, &seen), [Some(1), Some(0), None]);
         seen.add(0, &[[0.51, 0.0, -0.03], [0.51, 0.0, 0.03]]);
         seen.add(1, &[[2.01, 0.0, -0.03], [2.01, 0.0, 0.03]]);
