@@ -65,7 +65,7 @@ fn rest(samples: &[&PoseSample], noise: f64) -> Option<Rest> {
     let stands = |s: &&&PoseSample| (s.pose.theta - heading).abs() < STANDS * noise;
     let mut still: Vec<&PoseSample> = samples.iter().take_while(stands).copied().collect();
     loop {
-        let line = Line::through(&still)?;
+        let line = EvenMotion::through(&still)?;
         if line.seconds < LEAST_S + MARGIN_S {
             return None;
         }
@@ -76,7 +76,7 @@ fn rest(samples: &[&PoseSample], noise: f64) -> Option<Rest> {
     }
     let end_s = still.last()?.time_s;
     still.retain(|s| (s.time_s - end_s).abs() > MARGIN_S);
-    let line = Line::through(&still)?;
+    let line = EvenMotion::through(&still)?;
     Some((line.velocity, line.variance, line.seconds))
 }
 
@@ -91,7 +91,7 @@ fn place_noise(samples: &[&PoseSample]) -> f64 {
 }
 
 /// Even motion through samples.
-struct Line {
+struct EvenMotion {
     velocity: Vector2<f64>,
     /// Of either coordinate of the velocity.
     variance: f64,
@@ -100,7 +100,7 @@ struct Line {
     seconds: f64,
 }
 
-impl Line {
+impl EvenMotion {
     fn through(samples: &[&PoseSample]) -> Option<Self> {
         if samples.len() < 2 * FIRST {
             return None;
