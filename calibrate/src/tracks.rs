@@ -202,7 +202,7 @@ impl Draft {
         let timing = timing
             .finish(header_hz, options.rate(), numbered)
             .map_err(|repeated| {
-                let line = lines::Line {
+                let line = lines::TextLine {
                     number: repeated.line,
                     text: "",
                     ended: true,

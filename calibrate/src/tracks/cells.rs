@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 use std::path::Path;
 
-use super::lines::{Delimiter, Line};
+use super::lines::{Delimiter, TextLine};
 use super::{TrackError, TrackProblem};
 
 /// One cell: its text without quotes, and the byte of the line where it begins.
@@ -52,7 +52,7 @@ impl Cells {
     }
 
     /// A column's cell, trimmed; blank where the line ends before it.
-    pub(super) fn at<'a>(&self, line: &Line<'a>, column: usize) -> Cell<'a> {
+    pub(super) fn at<'a>(&self, line: &TextLine<'a>, column: usize) -> Cell<'a> {
         let Some(text) = self.text(line, column) else {
             return Cell {
                 raw: "",
@@ -69,18 +69,18 @@ impl Cells {
     }
 
     /// A column's text as it stands.
-    pub(super) fn text<'a>(&self, line: &Line<'a>, column: usize) -> Option<&'a str> {
+    pub(super) fn text<'a>(&self, line: &TextLine<'a>, column: usize) -> Option<&'a str> {
         let (start, end) = *self.spans.get(column)?;
         line.text.get(start as usize..end as usize)
     }
 
     /// Returns `true` if this column or a later one is not blank.
-    pub(super) fn any_from(&self, line: &Line<'_>, column: usize) -> bool {
+    pub(super) fn any_from(&self, line: &TextLine<'_>, column: usize) -> bool {
         (column..self.len()).any(|column| !self.at(line, column).raw.is_empty())
     }
 
     /// The last cell that is not blank.
-    pub(super) fn last<'a>(&self, line: &Line<'a>) -> Option<Cell<'a>> {
+    pub(super) fn last<'a>(&self, line: &TextLine<'a>) -> Option<Cell<'a>> {
         let cells = (0..self.len()).rev().map(|column| self.at(line, column));
         cells.into_iter().find(|cell| !cell.raw.is_empty())
     }
@@ -93,7 +93,7 @@ impl Cells {
     #[allow(clippy::cast_possible_truncation)]
     pub(super) fn split(
         &mut self,
-        line: &Line<'_>,
+        line: &TextLine<'_>,
         delimiter: Delimiter,
         file: &Path,
     ) -> Result<(), TrackError> {
@@ -122,7 +122,12 @@ impl Cells {
     }
 
     #[allow(clippy::cast_possible_truncation)]
-    fn split_quoted(&mut self, line: &Line<'_>, byte: u8, file: &Path) -> Result<(), TrackError> {
+    fn split_quoted(
+        &mut self,
+        line: &TextLine<'_>,
+        byte: u8,
+        file: &Path,
+    ) -> Result<(), TrackError> {
         let text = line.text;
         let mut at = 0;
         loop {
@@ -158,7 +163,7 @@ impl Cells {
 /// # Errors
 /// As [`Cells::split`].
 pub(super) fn split<'a>(
-    line: &Line<'a>,
+    line: &TextLine<'a>,
     delimiter: Delimiter,
     file: &Path,
 ) -> Result<Vec<Cell<'a>>, TrackError> {
@@ -170,7 +175,7 @@ pub(super) fn split<'a>(
 }
 
 /// Offset of the quote that closes the one at `open`.
-fn closing_quote(line: &Line<'_>, open: usize, file: &Path) -> Result<usize, TrackError> {
+fn closing_quote(line: &TextLine<'_>, open: usize, file: &Path) -> Result<usize, TrackError> {
     let bytes = line.text.as_bytes();
     let mut at = open + 1;
     while let Some(b) = bytes.get(at) {
@@ -190,7 +195,7 @@ mod tests {
     use super::*;
 
     fn cells(text: &str, delimiter: Delimiter) -> Result<Vec<String>, TrackError> {
-        let line = Line {
+        let line = TextLine {
             number: 7,
             text,
             ended: true,

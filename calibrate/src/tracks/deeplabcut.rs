@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::cells::{Cell, cell_at, split};
 use super::grid::{self, Clock, Columns, Grid};
-use super::lines::{Delimiter, Line, Lines};
+use super::lines::{Delimiter, Lines, TextLine};
 use super::{
     Draft, PointKind, Reading, TrackError, TrackFormat, TrackPoint, TrackProblem, TrackWarning,
     Unit,
@@ -19,14 +19,14 @@ pub(super) fn read(
     delimiter: Delimiter,
 ) -> Result<Draft, TrackError> {
     let Reading { file, options, .. } = *reading;
-    let mut rows: Vec<(Line<'_>, Vec<Cell<'_>>)> = Vec::new();
+    let mut rows: Vec<(TextLine<'_>, Vec<Cell<'_>>)> = Vec::new();
     for line in lines.head().filter(|line| !line.is_blank()).take(4) {
         rows.push((line, split(&line, delimiter, file)?));
     }
     let labelled = |label: &str| rows.iter().find(|(_, cells)| cell_at(cells, 0).is(label));
     let need = |label: &str, row: &'static str| {
         labelled(label).ok_or_else(|| {
-            let line = Line {
+            let line = TextLine {
                 number: 1,
                 text: "",
                 ended: true,
@@ -91,7 +91,7 @@ fn is_header(cells: &[Cell<'_>]) -> bool {
 
 /// The parts in order, and each one's columns.
 fn parts_and_columns(
-    coords_line: &Line<'_>,
+    coords_line: &TextLine<'_>,
     coords: &[Cell<'_>],
     name: impl Fn(usize) -> String,
     file: &Path,

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::cells::{Cell, split};
-use super::lines::{Delimiter, Line, Lines};
+use super::lines::{Delimiter, Lines, TextLine};
 use super::number::{Number, number};
 use super::{TrackError, TrackProblem, pose_table, sleap};
 
@@ -98,7 +98,7 @@ pub(super) fn detect(lines: &Lines<'_>, file: &Path) -> Result<Detected, TrackEr
     }
 }
 
-fn wide_delimiter(first: &Line<'_>) -> Option<Delimiter> {
+fn wide_delimiter(first: &TextLine<'_>) -> Option<Delimiter> {
     let rest = first.text.trim_start_matches(['"', ' ']);
     let key = rest.get(.."Format Version".len())?;
     if !key.eq_ignore_ascii_case("Format Version") {
@@ -118,7 +118,7 @@ fn wide_delimiter(first: &Line<'_>) -> Option<Delimiter> {
 }
 
 /// Formats that their first two or three lines give away.
-fn by_first_lines(first: &Line<'_>, below: &[Line<'_>], file: &Path) -> Option<Detected> {
+fn by_first_lines(first: &TextLine<'_>, below: &[TextLine<'_>], file: &Path) -> Option<Detected> {
     let delimiter = Delimiter::of(first.text);
     let cells = split(first, delimiter, file).ok()?;
     let word = cells.first()?.raw;
@@ -151,7 +151,7 @@ fn by_first_lines(first: &Line<'_>, below: &[Line<'_>], file: &Path) -> Option<D
 }
 
 /// Returns the delimiter of record lines, the character after the first word; `None` for other lines.
-fn records_delimiter(lines: &Lines<'_>, first: &Line<'_>) -> Option<Delimiter> {
+fn records_delimiter(lines: &Lines<'_>, first: &TextLine<'_>) -> Option<Delimiter> {
     let text = first.text.trim_start_matches(['"', ' ']);
     let word = RECORD_WORDS.iter().find(|word| text.starts_with(**word))?;
     let rest = text.get(word.len()..)?.trim_start_matches('"');
@@ -196,7 +196,7 @@ fn is_headerless(cells: &[Cell<'_>], delimiter: Delimiter) -> bool {
 }
 
 /// A table: the first line that is no comment names the columns, and one of them is the time or the frame.
-fn table(lines: &Lines<'_>, first: &Line<'_>, file: &Path) -> Result<Detected, TrackError> {
+fn table(lines: &Lines<'_>, first: &TextLine<'_>, file: &Path) -> Result<Detected, TrackError> {
     let unrecognised = || TrackError::Unrecognised {
         file: file.to_owned(),
         beginning: first.text.trim().chars().take(40).collect(),
@@ -223,7 +223,7 @@ fn table(lines: &Lines<'_>, first: &Line<'_>, file: &Path) -> Result<Detected, T
             |cell: &&Cell<'_>| number(cell.raw, delimiter.allows_decimal_comma()) != Number::Wrong;
         let numbers = cells.iter().filter(is_number);
         // ROS names frames of reference among its numbers, under as many titles.
-        let under_titles = |line: Line<'_>| {
+        let under_titles = |line: TextLine<'_>| {
             let titles = split(&line, delimiter, file).map_or(0, |titles| titles.len());
             titles == cells.len() && cells.first().is_some_and(|cell| is_number(&cell))
         };

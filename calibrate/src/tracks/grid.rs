@@ -7,7 +7,7 @@ mod notes;
 use std::path::Path;
 
 use super::cells::{Cell, Cells};
-use super::lines::{Delimiter, Line, Lines};
+use super::lines::{Delimiter, Lines, TextLine};
 use super::number::{Decimals, Number};
 use super::rotation::Rotation;
 use super::rows::{TakesRows, read_rows};
@@ -187,7 +187,7 @@ struct Reader<'f> {
 }
 
 impl TakesRows for Reader<'_> {
-    fn take_line(&mut self, line: &Line<'_>) -> Result<(), TrackError> {
+    fn take_line(&mut self, line: &TextLine<'_>) -> Result<(), TrackError> {
         if self.grid.comments && line.text.trim_start().starts_with(['#', '%']) {
             return Ok(());
         }
@@ -205,7 +205,7 @@ impl TakesRows for Reader<'_> {
 
 impl Reader<'_> {
     /// A row, taken whole or not at all.
-    fn row(&mut self, line: &Line<'_>) -> Result<(), TrackError> {
+    fn row(&mut self, line: &TextLine<'_>) -> Result<(), TrackError> {
         self.cells.split(line, self.grid.delimiter, self.file)?;
         row_length(
             line,
@@ -250,7 +250,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn clock(&mut self, line: &Line<'_>) -> Result<(u64, f64), TrackError> {
+    fn clock(&mut self, line: &TextLine<'_>) -> Result<(u64, f64), TrackError> {
         let row = self.body.timeline.len() as u64;
         let (frame, time) = match self.grid.clock {
             Clock::Counted { rate_hz } => return Ok((row, row as f64 / rate_hz)),
@@ -308,7 +308,7 @@ impl Reader<'_> {
     }
 
     /// A time as a clock shows it, in seconds from midnight of the first row's day.
-    fn shown(&mut self, line: &Line<'_>, cell: &Cell<'_>) -> Result<f64, TrackError> {
+    fn shown(&mut self, line: &TextLine<'_>, cell: &Cell<'_>) -> Result<f64, TrackError> {
         let Some(stamp) = Stamp::parse(cell.raw) else {
             let problem = TrackProblem::NotANumber {
                 text: cell.text().into_owned(),
@@ -324,7 +324,7 @@ impl Reader<'_> {
     /// That a frame number grows, or that at least its stamp does, after the one of the row before.
     fn grows(
         &mut self,
-        line: &Line<'_>,
+        line: &TextLine<'_>,
         frame: u64,
         stamps: Option<(f64, f64)>,
     ) -> Result<(), TrackError> {
@@ -344,7 +344,7 @@ impl Reader<'_> {
         }
     }
 
-    fn frame(&self, line: &Line<'_>, column: usize) -> Result<u64, TrackError> {
+    fn frame(&self, line: &TextLine<'_>, column: usize) -> Result<u64, TrackError> {
         let cell = self.cells.at(line, column);
         cell.raw.parse().map_err(|_| {
             let text = cell.text().into_owned();
@@ -352,7 +352,7 @@ impl Reader<'_> {
         })
     }
 
-    fn place(&mut self, line: &Line<'_>, index: usize) -> Result<Option<[f64; 3]>, TrackError> {
+    fn place(&mut self, line: &TextLine<'_>, index: usize) -> Result<Option<[f64; 3]>, TrackError> {
         let Some(columns) = self.grid.columns.get(index).copied() else {
             return Ok(None);
         };
@@ -396,7 +396,7 @@ impl Reader<'_> {
     }
 
     /// The point's orientation, if its columns say one.
-    fn turn(&mut self, line: &Line<'_>, index: usize) -> Result<Option<[f64; 4]>, TrackError> {
+    fn turn(&mut self, line: &TextLine<'_>, index: usize) -> Result<Option<[f64; 4]>, TrackError> {
         let columns = self.grid.columns.get(index);
         let Some(rotation) = columns.and_then(|columns| columns.rotation) else {
             return Ok(None);
@@ -422,7 +422,7 @@ impl Reader<'_> {
 
     fn not_a_number(
         &self,
-        line: &Line<'_>,
+        line: &TextLine<'_>,
         column: usize,
         index: usize,
         axis: usize,
@@ -475,7 +475,7 @@ impl Reader<'_> {
 /// Checks that a row has as many cells as the header and as the rows before it, blank ones included: a missing or extra cell
 /// shifts all that follow.
 pub(super) fn row_length(
-    line: &Line<'_>,
+    line: &TextLine<'_>,
     cells: &Cells,
     width: usize,
     extent: &mut Option<usize>,
@@ -498,7 +498,11 @@ pub(super) fn row_length(
 
 /// An error where the file ends in this row without a line's end, and it is shorter than it ought to be: its last number may
 /// have lost digits.
-pub(super) fn may_be_cut(line: &Line<'_>, shorter: bool, file: &Path) -> Result<(), TrackError> {
+pub(super) fn may_be_cut(
+    line: &TextLine<'_>,
+    shorter: bool,
+    file: &Path,
+) -> Result<(), TrackError> {
     if line.ended || !shorter {
         return Ok(());
     }

@@ -3,7 +3,7 @@
 
 use super::cells::{Cell, split};
 use super::grid::{self, Clock, Columns, Grid};
-use super::lines::{Delimiter, Line, Lines};
+use super::lines::{Delimiter, Lines, TextLine};
 use super::number::{Number, number};
 use super::{
     Draft, PointKind, Reading, TrackError, TrackFormat, TrackPoint, TrackProblem, TrackWarning,
@@ -24,7 +24,7 @@ pub(super) fn read(
 ) -> Result<Draft, TrackError> {
     let Reading { file, options, .. } = *reading;
     let rows = lines.head().filter(|line| !line.is_blank());
-    let rows: Vec<(Line<'_>, Vec<Cell<'_>>)> = rows
+    let rows: Vec<(TextLine<'_>, Vec<Cell<'_>>)> = rows
         .take(LOOKED_AT)
         .map_while(|line| Some((line, split(&line, delimiter, file).ok()?)))
         .collect();

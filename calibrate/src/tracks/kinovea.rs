@@ -3,7 +3,7 @@
 
 use super::cells::Cells;
 use super::grid::{decimals, may_be_cut};
-use super::lines::{Delimiter, Line, Lines};
+use super::lines::{Delimiter, Lines, TextLine};
 use super::merged::{TimedPose, merged};
 use super::number::{Decimals, Number};
 use super::rows::{TakesRows, read_rows};
@@ -51,7 +51,7 @@ struct Sections<'r> {
 }
 
 impl TakesRows for Sections<'_> {
-    fn take_line(&mut self, line: &Line<'_>) -> Result<(), TrackError> {
+    fn take_line(&mut self, line: &TextLine<'_>) -> Result<(), TrackError> {
         if let Some(comment) = line.text.trim_start().strip_prefix('#') {
             self.name = Some(comment.trim().to_owned());
             self.open = false;
@@ -70,7 +70,7 @@ impl TakesRows for Sections<'_> {
 }
 
 impl Sections<'_> {
-    fn row(&mut self, line: &Line<'_>) -> Result<(), TrackError> {
+    fn row(&mut self, line: &TextLine<'_>) -> Result<(), TrackError> {
         let file = self.reading.file;
         self.cells.split(line, Delimiter::Spaces, file)?;
         if self.cells.len() != 3 {
@@ -119,7 +119,12 @@ impl Sections<'_> {
         Ok(())
     }
 
-    fn number(&mut self, line: &Line<'_>, column: usize, what: &str) -> Result<f64, TrackError> {
+    fn number(
+        &mut self,
+        line: &TextLine<'_>,
+        column: usize,
+        what: &str,
+    ) -> Result<f64, TrackError> {
         let cell = self.cells.at(line, column);
         if let Number::Finite(value) = self.decimals.number(cell.raw) {
             return Ok(value);

@@ -56,7 +56,7 @@ impl Delimiter {
 
 /// One line with its number.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Line<'a> {
+pub(super) struct TextLine<'a> {
     /// 1-based.
     pub(super) number: usize,
     /// Without its end.
@@ -65,7 +65,7 @@ pub(super) struct Line<'a> {
     pub(super) ended: bool,
 }
 
-impl Line<'_> {
+impl TextLine<'_> {
     /// Returns `true` if the line holds only delimiters and spaces.
     pub(super) fn is_blank(&self) -> bool {
         self.text
@@ -131,11 +131,11 @@ impl<'s> Lines<'s> {
     }
 
     /// The beginning of the file, however far it was read.
-    pub(super) fn head(&self) -> impl Iterator<Item = Line<'_>> + Clone {
+    pub(super) fn head(&self) -> impl Iterator<Item = TextLine<'_>> + Clone {
         self.head
             .iter()
             .zip(1..)
-            .map(|((text, ended), number)| Line {
+            .map(|((text, ended), number)| TextLine {
                 number,
                 text,
                 ended: *ended,
@@ -151,7 +151,7 @@ impl<'s> Lines<'s> {
     ///
     /// # Errors
     /// [`TrackError::Read`], or a line that is too long.
-    pub(super) fn next(&mut self) -> Result<Option<Line<'_>>, TrackError> {
+    pub(super) fn next(&mut self) -> Result<Option<TextLine<'_>>, TrackError> {
         self.given += 1;
         let number = self.given;
         if number <= self.head.len() {
@@ -166,7 +166,7 @@ impl<'s> Lines<'s> {
             self.lossy = String::from_utf8_lossy(&self.buffer).into_owned();
             &self.lossy
         };
-        Ok(Some(Line {
+        Ok(Some(TextLine {
             number,
             text,
             ended,
@@ -187,7 +187,7 @@ impl<'s> Lines<'s> {
         if ended {
             self.buffer.pop();
         } else if count > LONGEST {
-            let line = Line {
+            let line = TextLine {
                 number,
                 text: "",
                 ended: true,

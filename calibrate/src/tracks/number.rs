@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::cells::Cell;
-use super::lines::{Delimiter, Line};
+use super::lines::{Delimiter, TextLine};
 use super::{TrackError, TrackProblem};
 
 /// Content of a cell that should hold a number.
@@ -65,7 +65,7 @@ impl Decimals {
     pub(super) fn cell(
         &mut self,
         cell: &Cell<'_>,
-        (line, file): (&Line<'_>, &Path),
+        (line, file): (&TextLine<'_>, &Path),
         what: &str,
     ) -> Result<Option<f64>, TrackError> {
         match self.number(cell.raw) {
@@ -144,7 +144,7 @@ pub(super) fn number(text: &str, decimal_comma: bool) -> Number {
 /// [`TrackProblem::Rate`] for anything but a positive number.
 pub(super) fn rate(
     cell: &Cell<'_>,
-    line: &Line<'_>,
+    line: &TextLine<'_>,
     file: &Path,
     decimal_comma: bool,
 ) -> Result<f64, TrackError> {

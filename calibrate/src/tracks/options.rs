@@ -3,7 +3,7 @@
 use swimmer_files::{Axes, PointName, Reflectors};
 
 use super::{TrackError, TrackPoint, TrackProblem, TrackWarning, Unit};
-use crate::tracks::lines::Line;
+use crate::tracks::lines::TextLine;
 use std::path::Path;
 
 /// Facts about a recording that its file does not state.
@@ -136,7 +136,7 @@ impl TrackOptions {
     }
 
     /// The user's rate, or an error if nothing states one.
-    pub(super) fn need_rate(&self, line: &Line<'_>, file: &Path) -> Result<f64, TrackError> {
+    pub(super) fn need_rate(&self, line: &TextLine<'_>, file: &Path) -> Result<f64, TrackError> {
         self.rate()
             .ok_or_else(|| line.error(file, 0, TrackProblem::NoRate))
     }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::cells::split;
 use super::grid::{self, Clock, Columns, Grid};
-use super::lines::{Delimiter, Line, Lines};
+use super::lines::{Delimiter, Lines, TextLine};
 use super::number::{Number, number};
 use super::rotation::{Rotation, normalized};
 use super::{Draft, PointKind, Reading, TrackError, TrackFormat, TrackPoint, TrackWarning, Unit};
@@ -17,10 +17,14 @@ const SPACE: usize = 8;
 const ROWS: usize = 50;
 
 /// The delimiter, if the first rows are such poses.
-pub(super) fn delimiter(first: &Line<'_>, below: &[Line<'_>], file: &Path) -> Option<Delimiter> {
+pub(super) fn delimiter(
+    first: &TextLine<'_>,
+    below: &[TextLine<'_>],
+    file: &Path,
+) -> Option<Delimiter> {
     let delimiter = Delimiter::of(first.text);
     let comma = delimiter.allows_decimal_comma();
-    let values = |line: &Line<'_>| -> Option<Vec<f64>> {
+    let values = |line: &TextLine<'_>| -> Option<Vec<f64>> {
         let cells = split(line, delimiter, file).ok()?;
         let value = |text: &str| match number(text, comma) {
             Number::Finite(value) => Some(value),

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::cells::{Cell, cell_at, split};
 use super::grid::{self, Clock, Columns, Grid};
-use super::lines::{Delimiter, Line, Lines};
+use super::lines::{Delimiter, Lines, TextLine};
 use super::number;
 use super::rotation::Rotation;
 use super::{
@@ -18,7 +18,7 @@ use super::{
 pub(super) fn read(lines: &mut Lines<'_>, reading: &Reading<'_>) -> Result<Draft, TrackError> {
     let Reading { file, options, .. } = *reading;
     let delimiter = Delimiter::Tab;
-    let mut head: Vec<(Line<'_>, Vec<Cell<'_>>)> = Vec::new();
+    let mut head: Vec<(TextLine<'_>, Vec<Cell<'_>>)> = Vec::new();
     for line in lines.head().filter(|line| !line.is_blank()) {
         let cells = split(&line, delimiter, file)?;
         let first = cell_at(&cells, 0);
@@ -116,7 +116,7 @@ pub(super) fn read(lines: &mut Lines<'_>, reading: &Reading<'_>) -> Result<Draft
 type Places = (Option<usize>, Option<usize>, Vec<Columns>);
 
 fn columns(
-    titles: Option<&(Line<'_>, Vec<Cell<'_>>)>,
+    titles: Option<&(TextLine<'_>, Vec<Cell<'_>>)>,
     names: &[String],
     file: &Path,
 ) -> Result<Places, TrackError> {
@@ -151,7 +151,7 @@ const MATRIX: usize = 7;
 
 /// Columns of rigid bodies, which stand one after the other: the title of the first column begins with the body's name, or not.
 fn of_bodies(
-    titles: Option<&(Line<'_>, Vec<Cell<'_>>)>,
+    titles: Option<&(TextLine<'_>, Vec<Cell<'_>>)>,
     names: &[String],
     file: &Path,
 ) -> Result<Places, TrackError> {

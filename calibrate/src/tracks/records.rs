@@ -14,7 +14,7 @@ use std::path::Path;
 
 use super::cells::Cells;
 use super::grid::Body;
-use super::lines::{Delimiter, Line, Lines};
+use super::lines::{Delimiter, Lines, TextLine};
 use super::number::Number;
 use super::rows::{TakesRows, read_rows};
 use super::timeline::Timeline;
@@ -60,7 +60,7 @@ struct Records<'f> {
 }
 
 impl TakesRows for Records<'_> {
-    fn take_line(&mut self, line: &Line<'_>) -> Result<(), TrackError> {
+    fn take_line(&mut self, line: &TextLine<'_>) -> Result<(), TrackError> {
         let record = Record::read(line, self.delimiter, self.file, &mut self.cells)?;
         self.reader.take(&record)
     }

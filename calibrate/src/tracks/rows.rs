@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use super::lines::{Line, Lines};
+use super::lines::{Lines, TextLine};
 use super::{TrackError, TrackProblem, TrackWarning};
 
 /// Takes a file's rows, one at a time.
 pub(super) trait TakesRows {
     /// A line that is not blank: taken whole or not at all.
-    fn take_line(&mut self, line: &Line<'_>) -> Result<(), TrackError>;
+    fn take_line(&mut self, line: &TextLine<'_>) -> Result<(), TrackError>;
 
     /// Returns `true` after the first row.
     fn has_rows(&self) -> bool;
@@ -57,7 +57,7 @@ pub(super) fn read_rows(
     if taker.has_rows() {
         return Ok(cut);
     }
-    let line = Line {
+    let line = TextLine {
         number: last_line,
         text: "",
         ended: true,

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::cells::{Cell, Cells, split};
 use super::grid::{Body, decimals, may_be_cut, row_length};
-use super::lines::{Delimiter, Line, Lines};
+use super::lines::{Delimiter, Lines, TextLine};
 use super::number::Decimals;
 use super::rows::{TakesRows, read_rows};
 use super::timeline::Timeline;
@@ -144,7 +144,7 @@ struct Instances<'r> {
 }
 
 impl TakesRows for Instances<'_> {
-    fn take_line(&mut self, line: &Line<'_>) -> Result<(), TrackError> {
+    fn take_line(&mut self, line: &TextLine<'_>) -> Result<(), TrackError> {
         let file = self.reading.file;
         self.cells.split(line, self.delimiter, file)?;
         row_length(line, &self.cells, self.width, &mut self.extent, file)?;
@@ -191,7 +191,7 @@ impl TakesRows for Instances<'_> {
 }
 
 impl Instances<'_> {
-    fn place(&mut self, line: &Line<'_>, node: usize) -> Result<Option<[f64; 3]>, TrackError> {
+    fn place(&mut self, line: &TextLine<'_>, node: usize) -> Result<Option<[f64; 3]>, TrackError> {
         let Some(Node { place, score, .. }) = self.nodes.get(node) else {
             return Ok(None);
         };
@@ -212,13 +212,13 @@ impl Instances<'_> {
         Ok(Some([x, y, 0.0]))
     }
 
-    fn value(&mut self, line: &Line<'_>, column: usize) -> Result<Option<f64>, TrackError> {
+    fn value(&mut self, line: &TextLine<'_>, column: usize) -> Result<Option<f64>, TrackError> {
         let cell = self.cells.at(line, column);
         self.decimals.cell(&cell, (line, self.reading.file), "node")
     }
 
     /// The first point of the row's animal; `None` if the animal was in this row before.
-    fn animal(&mut self, line: &Line<'_>, row: usize) -> Option<usize> {
+    fn animal(&mut self, line: &TextLine<'_>, row: usize) -> Option<usize> {
         let cell = self.track.map(|column| self.cells.at(line, column));
         let mut name = cell.map_or_else(String::new, |cell| cell.text().into_owned());
         if name.is_empty() {
@@ -248,7 +248,7 @@ impl Instances<'_> {
 }
 
 /// Returns `true` if these are the titles of such a table.
-pub(super) fn is_header(line: &Line<'_>, delimiter: Delimiter, file: &Path) -> bool {
+pub(super) fn is_header(line: &TextLine<'_>, delimiter: Delimiter, file: &Path) -> bool {
     let cells = split(line, delimiter, file).unwrap_or_default();
     let node = |cell: &Cell<'_>| cell.raw.strip_suffix(".x").is_some();
     cells.iter().any(|cell| cell.is("frame_idx")) && cells.iter().any(node)

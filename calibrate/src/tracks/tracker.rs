@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::cells::{Cell, Cells, cell_at, split};
 use super::grid::{self, Body, Clock, Columns, Grid, decimals, may_be_cut, row_length};
-use super::lines::{Delimiter, Line, Lines};
+use super::lines::{Delimiter, Lines, TextLine};
 use super::merged::{TimedPose, merged};
 use super::number::Decimals;
 use super::rows::{TakesRows, read_rows};
@@ -115,7 +115,7 @@ struct Reader<'f> {
 }
 
 impl TakesRows for Reader<'_> {
-    fn take_line(&mut self, line: &Line<'_>) -> Result<(), TrackError> {
+    fn take_line(&mut self, line: &TextLine<'_>) -> Result<(), TrackError> {
         self.row(line)
     }
 
@@ -132,7 +132,7 @@ impl<'f> Reader<'f> {
         delimiter: Delimiter,
     ) -> Result<Self, TrackError> {
         let file = reading.file;
-        let multi = |line: &Line<'_>| line.text.to_ascii_lowercase().starts_with("#multi:");
+        let multi = |line: &TextLine<'_>| line.text.to_ascii_lowercase().starts_with("#multi:");
         let mut rows = lines.head().filter(|line| !line.is_blank() && !multi(line));
         let (Some(names), Some(titles)) = (rows.next(), rows.next()) else {
             return Err(TrackError::Broken {
@@ -215,7 +215,7 @@ impl<'f> Reader<'f> {
         name: String,
         range: Range<usize>,
         cells: &[Cell<'_>],
-        line: &Line<'_>,
+        line: &TextLine<'_>,
     ) -> Result<(), TrackError> {
         let find = |title: &str| {
             range
@@ -257,7 +257,7 @@ impl<'f> Reader<'f> {
     }
 
     /// A row, taken whole or not at all.
-    fn row(&mut self, line: &Line<'_>) -> Result<(), TrackError> {
+    fn row(&mut self, line: &TextLine<'_>) -> Result<(), TrackError> {
         self.cells.split(line, self.delimiter, self.file)?;
         row_length(line, &self.cells, self.width, &mut self.extent, self.file)?;
         let mut stamps = Vec::with_capacity(self.clocks.len());
@@ -341,7 +341,7 @@ impl<'f> Reader<'f> {
 
     fn value(
         &mut self,
-        line: &Line<'_>,
+        line: &TextLine<'_>,
         column: usize,
         what: &str,
     ) -> Result<Option<f64>, TrackError> {

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::cells::{Cell, cell_at, split};
 use super::grid::{self, Clock, Columns, Grid};
-use super::lines::{Delimiter, Line, Lines};
+use super::lines::{Delimiter, Lines, TextLine};
 use super::number;
 use super::{
     Draft, PointKind, Reading, TrackError, TrackFormat, TrackPoint, TrackProblem, TrackWarning,
@@ -113,8 +113,8 @@ fn value<'a>(keys: &[Cell<'a>], values: &[Cell<'a>], key: &str) -> Option<Cell<'
 
 /// The markers, by order: Cortex puts spaces and any number of tabs between their names, and X1, Y1, Z1, … below.
 fn points(
-    names: &Line<'_>,
-    axes: &Line<'_>,
+    names: &TextLine<'_>,
+    axes: &TextLine<'_>,
     delimiter: Delimiter,
     file: &Path,
 ) -> Result<Vec<TrackPoint>, TrackError> {
@@ -163,7 +163,7 @@ fn points(
 }
 
 /// Single tabs, where blank cells are missing markers; or where that gives another number of cells, anything between them.
-fn rows_delimiter(line: &Line<'_>, header: Delimiter, width: usize, file: &Path) -> Delimiter {
+fn rows_delimiter(line: &TextLine<'_>, header: Delimiter, width: usize, file: &Path) -> Delimiter {
     let count = |delimiter| {
         let cells = split(line, delimiter, file).unwrap_or_default();
         let last = cells.iter().rposition(|cell| !cell.raw.is_empty());

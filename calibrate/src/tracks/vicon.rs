@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::cells::{Cell, cell_at, split};
 use super::grid::{self, Clock, Columns, Grid};
-use super::lines::{Delimiter, Line, Lines};
+use super::lines::{Delimiter, Lines, TextLine};
 use super::number;
 use super::rotation::Rotation;
 use super::{
@@ -22,7 +22,7 @@ pub(super) fn read(
     delimiter: Delimiter,
 ) -> Result<Draft, TrackError> {
     let Reading { file, options, .. } = *reading;
-    let rows: Vec<Line<'_>> = lines
+    let rows: Vec<TextLine<'_>> = lines
         .head()
         .filter(|line| !line.is_blank())
         .take(5)
@@ -141,7 +141,7 @@ fn rotation(
     Some(Rotation::Vector([x, y, z], radians))
 }
 
-fn unit_of(line: &Line<'_>, cell: &Cell<'_>, file: &Path) -> Result<Unit, TrackError> {
+fn unit_of(line: &TextLine<'_>, cell: &Cell<'_>, file: &Path) -> Result<Unit, TrackError> {
     Unit::from_name(cell.raw).ok_or_else(|| {
         let text = cell.text().into_owned();
         line.error(file, cell.at, TrackProblem::UnknownUnit { text })

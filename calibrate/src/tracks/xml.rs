@@ -7,7 +7,7 @@ use std::path::Path;
 
 use roxmltree::{Document, Node};
 
-use super::lines::{Line, Lines};
+use super::lines::{Lines, TextLine};
 use super::{Draft, FilePosition, Reading, TrackError, TrackProblem};
 
 /// Most bytes of a document: its tree takes several times as much memory.
@@ -107,7 +107,7 @@ impl Xml<'_> {
     /// The line for errors that are the document's.
     fn need_rate(&self, node: Node<'_, '_>, reading: &Reading<'_>) -> Result<f64, TrackError> {
         let place = self.document.text_pos_at(node.range().start);
-        let line = Line {
+        let line = TextLine {
             number: place.row as usize,
             text: "",
             ended: true,

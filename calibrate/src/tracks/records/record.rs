@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::{MOST, Number};
 use crate::tracks::cells::{Cell, Cells};
-use crate::tracks::lines::{Delimiter, Line};
+use crate::tracks::lines::{Delimiter, TextLine};
 use crate::tracks::number::number;
 use crate::tracks::rotation::Rotation;
 use crate::tracks::{TrackError, TrackProblem};
@@ -20,7 +20,7 @@ pub(super) enum Coordinates {
 }
 
 pub(super) struct Record<'r> {
-    line: Line<'r>,
+    line: TextLine<'r>,
     cells: &'r Cells,
     file: &'r Path,
     comma: bool,
@@ -28,7 +28,7 @@ pub(super) struct Record<'r> {
 
 impl<'r> Record<'r> {
     pub(super) fn read(
-        line: &Line<'r>,
+        line: &TextLine<'r>,
         delimiter: Delimiter,
         file: &'r Path,
         cells: &'r mut Cells,
@@ -36,7 +36,7 @@ impl<'r> Record<'r> {
         // Comments may hold anything, quotes left open too.
         if line.text.trim_start().starts_with("comment") {
             cells.split(
-                &Line {
+                &TextLine {
                     text: "comment",
                     ..*line
                 },

@@ -6,7 +6,7 @@ use super::rotations::{self, Found};
 use crate::tracks::cells::{Cell, cell_at, split};
 use crate::tracks::detect::TableLayout;
 use crate::tracks::grid::{Clock, Columns};
-use crate::tracks::lines::Line;
+use crate::tracks::lines::TextLine;
 use crate::tracks::number::{Number, number};
 use crate::tracks::{PointKind, TrackError, TrackOptions, TrackPoint, TrackProblem, Unit};
 
@@ -37,14 +37,14 @@ struct Name<'a> {
 impl Header {
     /// Reads the names; `first_row` is the first line of data, if there is any.
     pub(super) fn read(
-        line: Line<'_>,
-        first_row: Option<Line<'_>>,
+        line: TextLine<'_>,
+        first_row: Option<TextLine<'_>>,
         (file, layout): (&Path, &TableLayout),
         options: &TrackOptions,
     ) -> Result<Self, TrackError> {
         let text = line.text.trim_start_matches([' ', '#', '%']);
         let shift = line.text.len() - text.len();
-        let trimmed = Line { text, ..line };
+        let trimmed = TextLine { text, ..line };
         let mut cells = split(&trimmed, layout.delimiter, file)?;
         // A delimiter at the end of the header makes no column.
         while cells.last().is_some_and(|cell| cell.raw.is_empty()) {

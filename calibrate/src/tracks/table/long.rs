@@ -7,7 +7,7 @@ use super::header::Header;
 use crate::tracks::cells::{Cell, Cells, split};
 use crate::tracks::detect::TableLayout;
 use crate::tracks::grid::{Clock, Columns, decimals, may_be_cut, row_length};
-use crate::tracks::lines::{Line, Lines};
+use crate::tracks::lines::{Lines, TextLine};
 use crate::tracks::merged::{TimedPose, merged};
 use crate::tracks::number::{Decimals, Number};
 use crate::tracks::rows::{TakesRows, read_rows};
@@ -26,7 +26,7 @@ pub(super) fn read(
     layout: &TableLayout,
     (header, id): (Header, usize),
 ) -> Result<Draft, TrackError> {
-    let head: Vec<Line<'_>> = lines
+    let head: Vec<TextLine<'_>> = lines
         .head()
         .filter(|line| line.number >= layout.header_line)
         .collect();
@@ -114,7 +114,7 @@ impl Spots {
     /// # Errors
     /// Frame numbers without a rate.
     fn read(
-        head: &[Line<'_>],
+        head: &[TextLine<'_>],
         reading: &Reading<'_>,
         layout: &TableLayout,
         header: &Header,
@@ -172,7 +172,7 @@ impl Spots {
 }
 
 /// Stands for a header that is gone.
-const NO_LINE: Line<'static> = Line {
+const NO_LINE: TextLine<'static> = TextLine {
     number: 1,
     text: "",
     ended: true,
@@ -212,7 +212,7 @@ struct LongRows<'r> {
 }
 
 impl TakesRows for LongRows<'_> {
-    fn take_line(&mut self, line: &Line<'_>) -> Result<(), TrackError> {
+    fn take_line(&mut self, line: &TextLine<'_>) -> Result<(), TrackError> {
         if line.text.trim_start().starts_with(['#', '%']) {
             return Ok(());
         }
@@ -288,7 +288,7 @@ impl TakesRows for LongRows<'_> {
 }
 
 impl LongRows<'_> {
-    fn time(&mut self, line: &Line<'_>) -> Result<f64, TrackError> {
+    fn time(&mut self, line: &TextLine<'_>) -> Result<f64, TrackError> {
         let (column, seconds) = match self.clock {
             Clock::Numbered { frame, rate_hz, .. } => (frame, 1.0 / rate_hz),
             Clock::Stamped { time, seconds, .. } => (time, seconds),
@@ -314,7 +314,7 @@ impl LongRows<'_> {
 
     fn value(
         &mut self,
-        line: &Line<'_>,
+        line: &TextLine<'_>,
         column: usize,
         what: &str,
     ) -> Result<Option<f64>, TrackError> {

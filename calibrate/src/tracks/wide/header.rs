@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::tracks::cells::{Cell, split};
 use crate::tracks::grid;
-use crate::tracks::lines::{Delimiter, Line};
+use crate::tracks::lines::{Delimiter, TextLine};
 use crate::tracks::number;
 use crate::tracks::rotation::Rotation;
 use crate::tracks::{PointKind, TrackError, TrackPoint, TrackProblem, Unit};
@@ -31,11 +31,11 @@ pub(super) struct Header {
 
 /// Reads up to and with the row that begins with `Frame`.
 pub(super) fn read<'a>(
-    lines: &mut impl Iterator<Item = Line<'a>>,
+    lines: &mut impl Iterator<Item = TextLine<'a>>,
     file: &Path,
     delimiter: Delimiter,
 ) -> Result<Header, TrackError> {
-    let mut above: Vec<(Line<'a>, Vec<Cell<'a>>)> = Vec::new();
+    let mut above: Vec<(TextLine<'a>, Vec<Cell<'a>>)> = Vec::new();
     let mut last = None;
     for line in lines {
         last = Some(line);
@@ -62,8 +62,8 @@ pub(super) fn read<'a>(
 }
 
 fn assemble<'a>(
-    above: &[(Line<'a>, Vec<Cell<'a>>)],
-    axis: (Line<'a>, &[Cell<'a>]),
+    above: &[(TextLine<'a>, Vec<Cell<'a>>)],
+    axis: (TextLine<'a>, &[Cell<'a>]),
     file: &Path,
     delimiter: Delimiter,
 ) -> Result<Header, TrackError> {
@@ -142,7 +142,7 @@ fn width(types: &[Cell<'_>], axes: &[Cell<'_>]) -> usize {
 
 /// The first row: key, value, key, value. Values are found by their keys, because versions insert new keys anywhere.
 struct Keys<'r, 'a> {
-    line: &'r Line<'a>,
+    line: &'r TextLine<'a>,
     cells: &'r [Cell<'a>],
     file: &'r Path,
     comma: bool,
@@ -217,7 +217,7 @@ struct Rows<'r, 'a> {
 }
 
 impl<'r, 'a> Rows<'r, 'a> {
-    fn find(rows: &'r [(Line<'a>, Vec<Cell<'a>>)]) -> Self {
+    fn find(rows: &'r [(TextLine<'a>, Vec<Cell<'a>>)]) -> Self {
         let labelled = |label: &str| {
             let is = |cells: &&Vec<Cell<'a>>| cells.get(1).is_some_and(|cell| cell.is(label));
             rows.iter()
@@ -292,7 +292,7 @@ impl Group<'_> {
 /// Groups the position columns by (type, name, ID); a letter that comes again under the same key begins another point.
 fn points(
     columns: &Columns<'_, '_>,
-    axis_line: &Line<'_>,
+    axis_line: &TextLine<'_>,
     file: &Path,
 ) -> Result<(Vec<TrackPoint>, Vec<grid::Columns>), TrackError> {
     let mut groups: Vec<Group<'_>> = Vec::new();
