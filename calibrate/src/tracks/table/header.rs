@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::rotations::{self, Found};
+use super::rotations::{self, RotationColumns};
 use crate::tracks::cells::{Cell, cell_at, split};
 use crate::tracks::detect::TableLayout;
 use crate::tracks::grid::{Clock, Columns};
@@ -77,7 +77,8 @@ impl Header {
                     .filter(|_| groups.len() == 1 && turns.len() == 1)
             })
         };
-        let turns_of: Vec<Option<&Found>> = groups.iter().map(|(stem, _)| turn_of(stem)).collect();
+        let turns_of: Vec<Option<&RotationColumns>> =
+            groups.iter().map(|(stem, _)| turn_of(stem)).collect();
         let short_angles = turns_of.iter().flatten().any(|found| found.without_unit);
         let unit = unit(&names, &groups, &error)?;
         let whole = |column: &usize| {
@@ -92,7 +93,7 @@ impl Header {
         } else {
             PointKind::Marker
         };
-        let point = |((name, columns), turn): (&(String, Vec<usize>), Option<&Found>)| {
+        let point = |((name, columns), turn): (&(String, Vec<usize>), Option<&RotationColumns>)| {
             let name = rotations::point_name(name);
             let columns = columns.iter().map(whole).collect();
             let point = TrackPoint::new(name, kind, String::new(), columns);

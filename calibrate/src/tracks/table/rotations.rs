@@ -11,7 +11,7 @@ const SEPARATORS: [char; 6] = [' ', '_', '.', '-', ':', '/'];
 
 /// An orientation among a table's columns.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Found {
+pub(super) struct RotationColumns {
     /// The name of its point; empty if the columns have none.
     stem: String,
     pub(super) rotation: Rotation,
@@ -19,7 +19,7 @@ pub(super) struct Found {
     pub(super) without_unit: bool,
 }
 
-impl Found {
+impl RotationColumns {
     /// Returns `true` if it belongs to the point of these position columns.
     pub(super) fn is_of(&self, point: &str) -> bool {
         without(point, &POSITION).eq_ignore_ascii_case(&self.stem)
@@ -56,7 +56,7 @@ fn without(name: &str, words: &[&str]) -> String {
 }
 
 /// The orientations among columns of these names and units, and the columns that they take.
-pub(super) fn orientations(names: &[(&str, Option<&str>)]) -> Vec<Found> {
+pub(super) fn orientations(names: &[(&str, Option<&str>)]) -> Vec<RotationColumns> {
     let mut found = Vec::new();
     for (name, _) in names {
         found.extend(quaternion(name, names));
@@ -73,7 +73,7 @@ pub(super) fn orientations(names: &[(&str, Option<&str>)]) -> Vec<Found> {
                 Some("deg" | "°" | "degree" | "degrees") => 1_f64.to_radians(),
                 _ => 1.0,
             };
-            found.push(Found {
+            found.push(RotationColumns {
                 stem,
                 rotation: Rotation::Yaw(column, radians),
                 without_unit: unit.is_none(),
@@ -84,7 +84,7 @@ pub(super) fn orientations(names: &[(&str, Option<&str>)]) -> Vec<Found> {
 }
 
 /// The quaternion whose real part is the column of this name.
-fn quaternion(name: &str, names: &[(&str, Option<&str>)]) -> Option<Found> {
+fn quaternion(name: &str, names: &[(&str, Option<&str>)]) -> Option<RotationColumns> {
     let before = name.strip_suffix(['w', 'W'])?;
     let named = |letter: char| {
         let whole = format!("{before}{letter}");
@@ -104,7 +104,7 @@ fn quaternion(name: &str, names: &[(&str, Option<&str>)]) -> Option<Found> {
         }
     };
     let columns = [named('x')?, named('y')?, named('z')?, named('w')?];
-    Some(Found {
+    Some(RotationColumns {
         stem,
         rotation: Rotation::Quaternion(columns),
         without_unit: false,
@@ -115,7 +115,7 @@ fn quaternion(name: &str, names: &[(&str, Option<&str>)]) -> Option<Found> {
 mod tests {
     use super::*;
 
-    fn of(names: &str) -> Vec<Found> {
+    fn of(names: &str) -> Vec<RotationColumns> {
         let names: Vec<(&str, Option<&str>)> = names.split(',').map(|name| (name, None)).collect();
         orientations(&names)
     }
