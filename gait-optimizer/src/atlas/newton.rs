@@ -49,7 +49,7 @@ pub(crate) struct Newton<'a> {
 
 /// Accepted iterate.
 #[derive(Debug, Clone, Copy)]
-struct Here {
+struct Iterate {
     values: Values,
     expansion: Expansion,
     rotation: f64,
@@ -98,7 +98,7 @@ impl<'a> Newton<'a> {
             if !(values.energy.is_finite() && values.displacement.norm() > 0.0) {
                 return None;
             }
-            let here = Here {
+            let here = Iterate {
                 values,
                 expansion: self.aim.expansion(&values),
                 rotation,
@@ -134,7 +134,7 @@ impl<'a> Newton<'a> {
     }
 
     /// Performs one step, with increasing damping until it is accepted.
-    fn accepted(&mut self, from: &DMatrix<f64>, here: &Here, scale: f64) -> Option<(Step, New)> {
+    fn accepted(&mut self, from: &DMatrix<f64>, here: &Iterate, scale: f64) -> Option<(Step, New)> {
         for _ in 0..24 {
             if let Some(step) = self.step(here, self.damping * scale) {
                 self.penalty = self.penalty.max(2.0 * step.rotation.abs());
@@ -177,7 +177,7 @@ impl<'a> Newton<'a> {
     }
 
     /// Gradient of the Lagrangian with the dual variables of the barrier, and gradient of Δθ.
-    fn first_order(&mut self, here: &Here) {
+    fn first_order(&mut self, here: &Iterate) {
         let mut weights = here.expansion.gradient;
         weights.z += here.rotation;
         self.gradient.gemv(1.0, &self.work.gradients, &weights, 0.0);
@@ -197,7 +197,7 @@ impl<'a> Newton<'a> {
     }
 
     /// Hessian of the Lagrangian with the barrier term.
-    fn second_order(&mut self, here: &Here) {
+    fn second_order(&mut self, here: &Iterate) {
         let count = self.barrier.count();
         for ((local, margins), pressures) in
             self.local.iter_mut().zip(&self.margins).zip(&self.pressure)
@@ -237,7 +237,7 @@ impl<'a> Newton<'a> {
     }
 
     /// Damped Newton step. Returns `None` if the matrix is not positive definite.
-    fn step(&mut self, here: &Here, damping: f64) -> Option<Step> {
+    fn step(&mut self, here: &Iterate, damping: f64) -> Option<Step> {
         let unknowns = self.gradient.len();
         self.matrix.copy_from(&self.work.hessian);
         let mut trace = 0.0;
@@ -276,7 +276,7 @@ impl<'a> Newton<'a> {
     }
 
     /// Point after a step, shortened to stay inside the barrier. Returns `None` if the merit function does not decrease.
-    fn try_step(&mut self, from: &DMatrix<f64>, step: &Step, here: &Here) -> Option<New> {
+    fn try_step(&mut self, from: &DMatrix<f64>, step: &Step, here: &Iterate) -> Option<New> {
         let merit_here = self.merit(&here.values, true)?;
         let mut length = 1.0;
         for _ in 0..8 {
