@@ -10,7 +10,7 @@ use crate::runge_kutta::{Point, exact_step};
 
 /// Values at a node of the curve.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct CurveNode {
     pub(super) phi: Vector2<f64>,
     /// dΦ/du.
     pub(super) rate: Vector2<f64>,
@@ -25,7 +25,7 @@ pub(super) struct Place {
     pub(super) root_power: f64,
 }
 
-impl Place {
+impl CurveNode {
     /// Derivative of the pose by u.
     fn velocity(&self) -> Vector3<f64> {
         let body = self.first.connection * self.rate;
@@ -73,7 +73,7 @@ pub(super) struct Here {
 /// The whole cycle.
 #[derive(Debug, Clone)]
 pub(super) struct Path {
-    pub(super) places: Vec<Place>,
+    pub(super) places: Vec<CurveNode>,
     /// ∫√P du to every node.
     pub(super) power_length: Vec<f64>,
 }
@@ -103,11 +103,11 @@ impl Path {
         degree: Degree,
     ) -> Self {
         let (rates, bends) = (grid.slopes(shapes, degree), grid.bends(shapes, degree));
-        let mut places: Vec<Place> = shapes
+        let mut places: Vec<CurveNode> = shapes
             .iter()
             .zip(rates.iter().zip(&bends))
             .zip(firsts)
-            .map(|((&phi, (&rate, &bend)), first)| Place {
+            .map(|((&phi, (&rate, &bend)), first)| CurveNode {
                 phi,
                 rate,
                 bend,
@@ -182,7 +182,7 @@ impl Path {
 
     /// Largest distance between the poses of two paths over the same nodes.
     pub(super) fn pose_distance(&self, other: &Self) -> f64 {
-        let distance = |(a, b): (&Place, &Place)| {
+        let distance = |(a, b): (&CurveNode, &CurveNode)| {
             a.pose
                 .iter()
                 .zip(&b.pose)

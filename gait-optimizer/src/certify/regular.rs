@@ -8,7 +8,7 @@
 use nalgebra::Vector2;
 
 use super::grid::Along;
-use super::path::{Path, Place};
+use super::path::{CurveNode, Path};
 use super::variation::Gain;
 use super::{Degree, Openness, Subject};
 use crate::certificate::{Check, Condition};
@@ -132,7 +132,7 @@ impl Subject<'_> {
                     let Some(side) = self.bound_side(node) else {
                         return f64::NAN;
                     };
-                    let Place { rate, bend, .. } = place;
+                    let CurveNode { rate, bend, .. } = place;
                     let ([d1, d2], w) = (&place.first.d_power, &place.first.power);
                     let along = d1 * rate.x + d2 * rate.y;
                     let power = place.root_power.powi(2);

@@ -12,7 +12,7 @@ use swimmer_model::{GaussLegendre, Model};
 
 use super::Subject;
 use super::grid::Node;
-use super::path::{Here, Path, Place};
+use super::path::{CurveNode, Here, Path};
 use super::variation::{Element, Form, Gain, Push};
 use crate::certificate::{Check, Condition};
 use crate::cycle::Cycle;
@@ -267,7 +267,8 @@ impl Neighbours<'_> {
             .nodes
             .iter()
             .zip(&self.subject.path.places);
-        let push = |(node, place): (&Node, &Place)| place.right() * height(node.u).unwrap_or(0.0);
+        let push =
+            |(node, place): (&Node, &CurveNode)| place.right() * height(node.u).unwrap_or(0.0);
         let pushes: Vec<Vector2<f64>> = nodes.map(push).collect();
         let farthest = pushes.iter().map(Vector2::norm).fold(0.0, f64::max);
         pushes.iter().map(|push| push / farthest).collect()

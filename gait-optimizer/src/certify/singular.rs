@@ -8,7 +8,7 @@ use nalgebra::Vector2;
 use swimmer_files::Objective;
 
 use super::grid::Along;
-use super::path::Place;
+use super::path::CurveNode;
 use super::variation::Gain;
 use super::{Degree, Openness, Subject};
 use crate::certificate::{Check, Condition};
@@ -84,7 +84,7 @@ impl Subject<'_> {
         if free().next().is_none() {
             return Vec::new();
         }
-        let largest = |value: &dyn Fn(&Height, &Place) -> f64| {
+        let largest = |value: &dyn Fn(&Height, &CurveNode) -> f64| {
             let values = free().map(|(_, (height, place))| value(height, place));
             values.fold(0.0, worse)
         };
@@ -92,7 +92,7 @@ impl Subject<'_> {
         let steepest = largest(&|height, _| height.gradient.norm());
         let slope_at = |height: &Height| height.gradient.norm().max(1e-3 * steepest);
         // Shift of the zero per unit of pose error.
-        let leverage = |height: &Height, place: &Place| {
+        let leverage = |height: &Height, place: &CurveNode| {
             2.0 * place.first.curvature().norm() / slope_at(height)
         };
         let open = largest(&leverage) * open.pose;

@@ -2,7 +2,7 @@
 
 use super::{Gain, Neighbours, SAME};
 use crate::certify::grid::Along;
-use crate::certify::path::Place;
+use crate::certify::path::CurveNode;
 use crate::certify::{SMOOTH, Subject};
 
 /// Number of intervals of the cycle or of its first quarter; the next constant is the least number per piece.
@@ -33,7 +33,7 @@ impl Neighbours<'_> {
         if self.gain.is_priced() {
             return grid.nodes.iter().map(|node| node.u).collect();
         }
-        let slope = |place: &Place| {
+        let slope = |place: &CurveNode| {
             let (height, ..) = self.momentum.evaluate(model, &place.phi, &place.pose);
             height.gradient.norm()
         };
