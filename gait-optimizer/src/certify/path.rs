@@ -61,7 +61,7 @@ impl CurveNode {
 }
 
 /// Values between nodes.
-pub(super) struct Here {
+pub(super) struct CurvePoint {
     pub(super) phi: Vector2<f64>,
     /// dΦ/du.
     pub(super) rate: Vector2<f64>,
@@ -137,7 +137,7 @@ impl Path {
     }
 
     /// At u, by the cubic through values and slopes at the nodes on either side; none beyond the last.
-    pub(super) fn between(&self, grid: &Grid, u: f64) -> Option<Here> {
+    pub(super) fn between(&self, grid: &Grid, u: f64) -> Option<CurvePoint> {
         let after = grid.nodes.partition_point(|node| node.u < u).max(1);
         let before = grid.before(after)?;
         let from = grid.nodes.get(before)?.u;
@@ -152,7 +152,7 @@ impl Path {
         let gamma = (a + b) * width - way * 2.0;
         let here = p + a * (width * t) + (beta + gamma * t) * (t * t);
         let change = a + (beta * 2.0 + gamma * (3.0 * t)) * (t / width);
-        Some(Here {
+        Some(CurvePoint {
             phi: here.fixed_rows::<2>(0).into(),
             rate: here.fixed_rows::<2>(2).into(),
             bend: change.fixed_rows::<2>(2).into(),

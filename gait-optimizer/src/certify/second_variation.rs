@@ -12,7 +12,7 @@ use swimmer_model::{GaussLegendre, Model};
 
 use super::Subject;
 use super::grid::Node;
-use super::path::{CurveNode, Here, Path};
+use super::path::{CurveNode, CurvePoint, Path};
 use super::variation::{Element, Form, Gain, Push};
 use crate::certificate::{Check, Condition};
 use crate::cycle::Cycle;
@@ -208,7 +208,7 @@ impl Neighbours<'_> {
                 continue;
             }
             for share in PLACES {
-                let Some(Here {
+                let Some(CurvePoint {
                     phi,
                     rate,
                     bend,
