@@ -73,7 +73,7 @@ impl Met {
 
 /// Reason why the trace of a quarter ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Fate {
+pub(crate) enum TraceEnd {
     /// On φ₁ = −φ₂, as it should.
     Ended,
     /// Back where it or its mirror images have been.
@@ -91,7 +91,7 @@ pub(crate) enum Fate {
 pub(crate) struct Quarter {
     pub(crate) legs: Vec<Leg>,
     pub(crate) met: Met,
-    pub(crate) fate: Fate,
+    pub(crate) fate: TraceEnd,
     pub(crate) end: State,
 }
 
@@ -107,7 +107,7 @@ impl Quarter {
             let end = self.end[1] - self.end[0];
             (end - to) * (to - from) > 0.0
         });
-        self.fate == Fate::Ended && beyond
+        self.fate == TraceEnd::Ended && beyond
     }
 
     /// Continuation along φ₁ = −φ₂ of a quarter that ends there. Returns `None` if that line is no bound or another bound is in
@@ -118,7 +118,7 @@ impl Quarter {
         (flow, region): (Flow<'_>, &Region),
         options: TraceOptions,
     ) -> Option<Self> {
-        if self.fate != Fate::Ended || self.touched() {
+        if self.fate != TraceEnd::Ended || self.touched() {
             return None;
         }
         let motion = along_the_end(region, &self.end, touch)?;
@@ -162,28 +162,29 @@ pub(crate) fn follow(
             met = met.and_ran(&leg.from, &leg.to);
             // The rest of that line is off the region.
             if matches!(event, Some(Event::Bound(_))) {
-                return Err(Fate::CameBack);
+                return Err(TraceEnd::CameBack);
             }
         }
         match event {
-            None => Err(Fate::Stalled),
-            Some(Event::End(End::Antidiagonal)) => Err(Fate::Ended),
-            Some(Event::End(End::Diagonal)) => Err(Fate::CameBack),
-            Some(Event::End(End::Horizon)) => Err(Fate::LeftHorizon),
+            None => Err(TraceEnd::Stalled),
+            Some(Event::End(End::Antidiagonal)) => Err(TraceEnd::Ended),
+            Some(Event::End(End::Diagonal)) => Err(TraceEnd::CameBack),
+            Some(Event::End(End::Horizon)) => Err(TraceEnd::LeftHorizon),
             Some(Event::HeightGone) => Ok(Motion::Singular),
-            Some(Event::PieceEnd) => leg.motion.next_piece().ok_or(Fate::Stalled),
+            Some(Event::PieceEnd) => leg.motion.next_piece().ok_or(TraceEnd::Stalled),
             Some(Event::Bound(index)) => {
-                let track = Track::new(region, index, &shape(&leg.to), 1.0).ok_or(Fate::Stalled)?;
+                let track =
+                    Track::new(region, index, &shape(&leg.to), 1.0).ok_or(TraceEnd::Stalled)?;
                 let edge = track.wall.edge();
                 if is_start_line(edge) {
                     let ([low, high], at) = (met.start, leg.to[0] + leg.to[1]);
                     if low < at && at < high {
-                        return Err(Fate::CameBack);
+                        return Err(TraceEnd::CameBack);
                     }
                 }
                 // Along φ₁ = φ₂ to the straight shape.
                 if is_end_line(edge) && met.end.is_some() {
-                    return Err(Fate::Ended);
+                    return Err(TraceEnd::Ended);
                 }
                 Ok(onto(track, &tracer.flow, &leg.to, met.start))
             }
@@ -193,7 +194,7 @@ pub(crate) fn follow(
         end: legs.last().map_or(start, |leg| leg.to),
         legs,
         met,
-        fate: fate.unwrap_or(Fate::TooManyArcs),
+        fate: fate.unwrap_or(TraceEnd::TooManyArcs),
     }
 }
 

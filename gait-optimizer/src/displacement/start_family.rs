@@ -7,7 +7,9 @@ use swimmer_files::{ArcKind, Bounds};
 
 use swimmer_model::Model;
 
-use super::flow::{FINE, Fate, Met, Quarter, Touch, TraceOptions, follow, is_end_line, lasting};
+use super::flow::{
+    FINE, Met, Quarter, Touch, TraceEnd, TraceOptions, follow, is_end_line, lasting,
+};
 use crate::arcs::Leg;
 use crate::momentum::{Flow, Momentum, Motion, State, Track, pose, shape};
 use crate::region::{Bound, Region};
@@ -74,7 +76,7 @@ pub(crate) fn families(flow: Flow<'_>, bounds: &Bounds, region: &Region) -> Vec<
         };
         let way = along_bounds(flow, region, start, false);
         let stretches = stretches(&way.legs);
-        if way.fate == Fate::Ended && !stretches.is_empty() {
+        if way.fate == TraceEnd::Ended && !stretches.is_empty() {
             families.push(StartFamily::Bounds { stretches });
         }
     }

@@ -1,7 +1,7 @@
 //! One extremal, from a place on a family to where it ends: traced once up to φ₁ = −φ₂, and on from there for each line.
 
 use super::super::Fates;
-use super::super::flow::{FINE, Fate, Met, Quarter, Touch, TraceOptions, follow, lasting};
+use super::super::flow::{FINE, Met, Quarter, Touch, TraceEnd, TraceOptions, follow, lasting};
 use super::super::start_family::{Place, StartFamily};
 use super::{Candidate, Line, MIDDLING, Search};
 use crate::momentum::{Flow, Motion, shape};
@@ -135,15 +135,15 @@ impl Fates {
             return;
         };
         match quarter.fate {
-            Fate::Ended => {
+            TraceEnd::Ended => {
                 self.ended += 1;
                 let missed = (quarter.end[3] - final_y).abs();
                 let nearest = self.nearest.unwrap_or(f64::INFINITY).min(missed);
                 self.nearest = Some(nearest);
             }
-            Fate::CameBack => self.came_back += 1,
-            Fate::LeftHorizon => self.left_horizon += 1,
-            Fate::Stalled | Fate::TooManyArcs => self.lost += 1,
+            TraceEnd::CameBack => self.came_back += 1,
+            TraceEnd::LeftHorizon => self.left_horizon += 1,
+            TraceEnd::Stalled | TraceEnd::TooManyArcs => self.lost += 1,
         }
     }
 }
