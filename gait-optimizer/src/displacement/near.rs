@@ -3,7 +3,7 @@
 use swimmer_files::ArcKind;
 
 use super::flow::Touch;
-use super::search::{Line, Search};
+use super::search::{QuarterBranch, Search};
 use super::start_family::{StartFamily, families};
 use super::{DisplacementProblem, certified};
 use crate::cycle::Arc;
@@ -57,7 +57,7 @@ pub fn displacement_near(
     let found = families(flow, &problem.bounds, &region)
         .iter()
         .filter_map(|family| {
-            let line = Line {
+            let line = QuarterBranch {
                 family,
                 touch: Touch::Ends,
             };

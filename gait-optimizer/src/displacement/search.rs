@@ -56,7 +56,7 @@ pub(crate) struct Search<'a> {
 
 /// Quarters that leave a family and do the same where they first meet φ₁ = −φ₂: one parameter.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Line<'a> {
+pub(crate) struct QuarterBranch<'a> {
     pub(crate) family: &'a StartFamily,
     pub(crate) touch: Touch,
 }
@@ -158,7 +158,7 @@ impl<'a> Search<'a> {
                 let last = halvings == 0 || left[line] == 0;
                 match ends {
                     [Some(from), Some(to)] if from.arcs == to.arcs || last => {
-                        let line = Line { family, touch };
+                        let line = QuarterBranch { family, touch };
                         found.extend(self.between(line, [(a.0, from.lambda4), (b.0, to.lambda4)]));
                     }
                     _ if last => {}
@@ -179,7 +179,7 @@ impl<'a> Search<'a> {
 
     /// The candidate between two places of the coarse scan, with `λ₄(t_f) = 0`: first at the coarse tolerance, for which the
     /// bracket is valid, then by secants at the fine one. Returns `None` without a change of sign, and at a jump.
-    fn between(&self, line: Line<'_>, ends: [(f64, f64); 2]) -> Option<Candidate> {
+    fn between(&self, line: QuarterBranch<'_>, ends: [(f64, f64); 2]) -> Option<Candidate> {
         let changes = ends[0].1.signum() * ends[1].1.signum() < 0.0;
         let coarse = |p| Some(self.miss(line, p, COARSE)?.lambda4);
         let near = changes.then(|| root(ends, NEAR, coarse)).flatten()?;
@@ -188,7 +188,7 @@ impl<'a> Search<'a> {
 
     /// The candidate near a place: secants at an intermediate tolerance, then a few steps at the fine one with the same slope,
     /// since the fine shots dominate the cost. Returns `None` if the secants diverge.
-    pub(super) fn near(&self, line: Line<'_>, near: f64) -> Option<Candidate> {
+    pub(super) fn near(&self, line: QuarterBranch<'_>, near: f64) -> Option<Candidate> {
         let (mut p, slope) = self.secants(line, near)?;
         let lambda4 = |shot: &Shot<'_>| Some(self.miss_of(shot, line)?.lambda4);
         let mut shot = self.shoot(line.family, p, FINE)?;
@@ -210,7 +210,7 @@ impl<'a> Search<'a> {
     }
 
     /// Secant method at the middling tolerance: a place with a small `λ₄(t_f)` and the slope there.
-    fn secants(&self, line: Line<'_>, near: f64) -> Option<(f64, f64)> {
+    fn secants(&self, line: QuarterBranch<'_>, near: f64) -> Option<(f64, f64)> {
         let mut before = (near, self.miss(line, near, MIDDLING)?.lambda4);
         // Away from the family's end, which may be nearer.
         let [low, high] = line.family.range();
@@ -243,7 +243,7 @@ impl<'a> Search<'a> {
             return None; // which would be no loop
         }
         let final_y = family.end()?[3];
-        let quarter = self.whole(Line { family, touch }, final_y)?;
+        let quarter = self.whole(QuarterBranch { family, touch }, final_y)?;
         let mut legs = quarter.legs.iter();
         let stayed = legs.all(|leg| leg.motion != Motion::Singular);
         let on_the_end = (quarter.end[3] - final_y).abs() < 1e-10;
@@ -252,7 +252,12 @@ impl<'a> Search<'a> {
     }
 
     /// The extremal that leaves a family at p, where it ends.
-    pub(super) fn miss(&self, line: Line<'_>, p: f64, control: StepControl) -> Option<Miss> {
+    pub(super) fn miss(
+        &self,
+        line: QuarterBranch<'_>,
+        p: f64,
+        control: StepControl,
+    ) -> Option<Miss> {
         self.miss_of(&self.shoot(line.family, p, control)?, line)
     }
 
@@ -269,7 +274,7 @@ impl<'a> Search<'a> {
     ) -> [Option<Miss>; 3] {
         TOUCHES.map(|touch| {
             let asked = which[touch as usize] && family.may(touch);
-            self.miss_of(shot.filter(|_| asked)?, Line { family, touch })
+            self.miss_of(shot.filter(|_| asked)?, QuarterBranch { family, touch })
         })
     }
 

@@ -3,7 +3,7 @@
 use super::super::Fates;
 use super::super::flow::{FINE, Met, Quarter, Touch, TraceEnd, TraceOptions, follow, lasting};
 use super::super::start_family::{Place, StartFamily};
-use super::{Candidate, Line, MIDDLING, Search};
+use super::{Candidate, MIDDLING, QuarterBranch, Search};
 use crate::momentum::{Flow, Motion, shape};
 use crate::runge_kutta::StepControl;
 
@@ -55,7 +55,7 @@ impl<'a> Search<'a> {
     }
 
     /// Quarter of a shot on its line. Returns `None` if it does not end properly.
-    fn onwards(&self, shot: &Shot<'_>, line: Line<'_>) -> Option<Quarter> {
+    fn onwards(&self, shot: &Shot<'_>, line: QuarterBranch<'_>) -> Option<Quarter> {
         // From the end line a quarter has gone on along it already.
         let went_on = !line.family.may(Touch::Ends) && shot.quarter.touched();
         let quarter = if went_on || line.touch == Touch::Ends {
@@ -68,7 +68,7 @@ impl<'a> Search<'a> {
     }
 
     /// The extremal that a shot becomes on its line, where that ends as it should.
-    pub(super) fn miss_of(&self, shot: &Shot<'_>, line: Line<'_>) -> Option<Miss> {
+    pub(super) fn miss_of(&self, shot: &Shot<'_>, line: QuarterBranch<'_>) -> Option<Miss> {
         let quarter = self.onwards(shot, line)?;
         let arcs = lasting(&quarter.legs).fold(0, |arcs: u64, leg| {
             let arc = leg.motion.bound().map_or(1, |index| 2 + index as u64);
@@ -89,7 +89,7 @@ impl<'a> Search<'a> {
     }
 
     /// The quarter that begins where a family does, where it ends.
-    pub(super) fn whole(&self, line: Line<'_>, final_y: f64) -> Option<Quarter> {
+    pub(super) fn whole(&self, line: QuarterBranch<'_>, final_y: f64) -> Option<Quarter> {
         let Place { state, motion } = line.family.start()?;
         let flow = self.flow(final_y, motion);
         let options = options(FINE, Met::beginning(&state));
@@ -104,7 +104,12 @@ impl<'a> Search<'a> {
     }
 
     /// A shot with all that comes before it.
-    pub(super) fn begun(&self, line: Line<'_>, p: f64, shot: &Shot<'_>) -> Option<Candidate> {
+    pub(super) fn begun(
+        &self,
+        line: QuarterBranch<'_>,
+        p: f64,
+        shot: &Shot<'_>,
+    ) -> Option<Candidate> {
         let quarter = match line.family {
             StartFamily::StartLine { .. } => self.onwards(shot, line)?,
             // Again from the start: the multiplier itself must fall to zero at p.

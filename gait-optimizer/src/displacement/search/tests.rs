@@ -79,7 +79,7 @@ fn neighbour_gain(search: &Search<'_>, family: &StartFamily, candidate: &Candida
         StartFamily::EndLine { .. } => return None,
     };
     let x = |p: f64| {
-        let line = Line {
+        let line = QuarterBranch {
             family,
             touch: Touch::Ends,
         };
