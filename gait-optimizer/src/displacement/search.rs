@@ -84,7 +84,7 @@ const HALVINGS: usize = 10;
 const MOST_REFINEMENTS: usize = 2 * SCAN_POINTS;
 
 /// A place looked at, and the extremals from there where they end, one for each of [`TOUCHES`].
-type Look = (f64, [Option<Miss>; 3]);
+type ScanPoint = (f64, [Option<Miss>; 3]);
 
 impl<'a> Search<'a> {
     /// All candidates, in the order of the families, and the fates of the scan, which probes a number of places of each family.
@@ -111,7 +111,7 @@ impl<'a> Search<'a> {
     ) {
         let [low, high] = family.range();
         let place = |look: usize| low + (high - low) * (look as f64 + 0.5) / places as f64;
-        let mut looks: Vec<Look> = (0..places)
+        let mut looks: Vec<ScanPoint> = (0..places)
             .map(|look| (place(look), self.look(family, place(look), fates)))
             .collect();
         // Between the outermost places and the family's own ends, where its arc shrinks to nothing.
@@ -142,7 +142,7 @@ impl<'a> Search<'a> {
     fn refine(
         &self,
         family: &StartFamily,
-        [a, b]: [Look; 2],
+        [a, b]: [ScanPoint; 2],
         left: &mut [usize; 3],
         found: &mut Vec<Candidate>,
     ) {
