@@ -43,7 +43,7 @@ pub(crate) struct Stretch {
 
 /// A place on a family.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Place {
+pub(crate) struct StartState {
     pub(crate) state: State,
     /// Motion of the curve up to the family; singular on φ₁ = φ₂.
     pub(crate) motion: Motion,
@@ -70,7 +70,7 @@ pub(crate) fn families(flow: Flow<'_>, bounds: &Bounds, region: &Region) -> Vec<
         if let Bound::Clearance(clearance) = &mut track.wall {
             *clearance = clearance.held_to(clearance.after_tip(0));
         }
-        let start = Place {
+        let start = StartState {
             state,
             motion: Motion::Along(track),
         };
@@ -122,7 +122,7 @@ pub(crate) fn families_on_the_diagonal(
 fn along_bounds(
     flow: Flow<'_>,
     region: &Region,
-    Place { state, motion }: Place,
+    StartState { state, motion }: StartState,
     leaves: bool,
 ) -> Quarter {
     let options = options(&state, leaves);
@@ -138,10 +138,10 @@ fn options(began: &State, leaves: bool) -> TraceOptions {
 }
 
 /// Start of the quarters that leave the straight shape along φ₁ = −φ₂. Returns `None` if the bounds do not allow it.
-fn straight_shape(region: &Region, index: usize) -> Option<Place> {
+fn straight_shape(region: &Region, index: usize) -> Option<StartState> {
     let straight = Vector2::zeros();
     let track = Track::new(region, index, &straight, 1.0)?.back();
-    (region.overstepped(&straight) <= 0.0).then_some(Place {
+    (region.overstepped(&straight) <= 0.0).then_some(StartState {
         state: [0.0; 6],
         motion: Motion::Along(track),
     })
@@ -150,7 +150,7 @@ fn straight_shape(region: &Region, index: usize) -> Option<Place> {
 /// State at which the multiplier of φ₁ = −φ₂ falls to zero along a stretch of that line. Its curvature has no θ component, so the
 /// place is the same for every λ₄.
 fn turn(flow: Flow<'_>, region: &Region, stretch: &Stretch) -> Option<State> {
-    let start = Place {
+    let start = StartState {
         state: stretch.from,
         motion: Motion::Along(stretch.track),
     };
@@ -232,9 +232,9 @@ impl StartFamily {
     }
 
     /// The state at a place; `flow` only carries the model. None outside the family.
-    pub(crate) fn place(&self, flow: Flow<'_>, p: f64, control: StepControl) -> Option<Place> {
+    pub(crate) fn place(&self, flow: Flow<'_>, p: f64, control: StepControl) -> Option<StartState> {
         match self {
-            Self::StartLine { .. } => Some(Place {
+            Self::StartLine { .. } => Some(StartState {
                 state: [p, p, 0.0, 0.0, 0.0, 0.0],
                 motion: Motion::Singular,
             }),
@@ -246,11 +246,11 @@ impl StartFamily {
                 let drive = Flow { motion, ..flow };
                 let start = Point::new(&drive, stretch.from);
                 let state = advance(&drive, start, p - stretch.span[0], control)?.z;
-                Some(Place { state, motion })
+                Some(StartState { state, motion })
             }
             Self::EndLine {
                 stretches, turn, ..
-            } => Some(Place {
+            } => Some(StartState {
                 state: *turn,
                 motion: Motion::Along(stretches.last()?.track),
             }),
@@ -258,7 +258,7 @@ impl StartFamily {
     }
 
     /// `y_f` of the extremal that becomes singular at a place: the one for which the height vanishes there.
-    pub(crate) fn final_y(&self, model: &Model<f64>, place: &Place, p: f64) -> Option<f64> {
+    pub(crate) fn final_y(&self, model: &Model<f64>, place: &StartState, p: f64) -> Option<f64> {
         let [_, y, theta] = pose(&place.state);
         let final_y = match self {
             Self::EndLine { .. } => y + p / (1.0 - p * p),
@@ -290,8 +290,8 @@ impl StartFamily {
     }
 
     /// The first place along bounds.
-    pub(crate) fn start(&self) -> Option<Place> {
-        self.stretches().first().map(|first| Place {
+    pub(crate) fn start(&self) -> Option<StartState> {
+        self.stretches().first().map(|first| StartState {
             state: first.from,
             motion: Motion::Along(first.track),
         })

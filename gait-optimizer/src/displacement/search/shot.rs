@@ -2,7 +2,7 @@
 
 use super::super::Fates;
 use super::super::flow::{FINE, Met, Quarter, Touch, TraceEnd, TraceOptions, follow, lasting};
-use super::super::start_family::{Place, StartFamily};
+use super::super::start_family::{StartFamily, StartState};
 use super::{Candidate, MIDDLING, QuarterBranch, Search};
 use crate::momentum::{Flow, Motion, shape};
 use crate::runge_kutta::StepControl;
@@ -37,7 +37,7 @@ impl<'a> Search<'a> {
     ) -> Option<Shot<'a>> {
         let place = self.place(family, p, control)?;
         let final_y = family.final_y(self.model, &place, p)?;
-        let Place { state, motion } = place;
+        let StartState { state, motion } = place;
         let phi = shape(&state);
         let flow = self.flow(final_y, Motion::Singular);
         let direction = flow.direction(&state);
@@ -82,7 +82,7 @@ impl<'a> Search<'a> {
     }
 
     /// A place, one step of tolerance closer than what is followed from there.
-    fn place(&self, family: &StartFamily, p: f64, control: StepControl) -> Option<Place> {
+    fn place(&self, family: &StartFamily, p: f64, control: StepControl) -> Option<StartState> {
         let coarse = control.tolerance > MIDDLING.tolerance;
         let flow = self.flow(0.0, Motion::Singular);
         family.place(flow, p, if coarse { MIDDLING } else { FINE })
@@ -90,7 +90,7 @@ impl<'a> Search<'a> {
 
     /// The quarter that begins where a family does, where it ends.
     pub(super) fn whole(&self, line: QuarterBranch<'_>, final_y: f64) -> Option<Quarter> {
-        let Place { state, motion } = line.family.start()?;
+        let StartState { state, motion } = line.family.start()?;
         let flow = self.flow(final_y, motion);
         let options = options(FINE, Met::beginning(&state));
         let quarter = follow(flow, self.region, state, options);
