@@ -165,7 +165,7 @@ pub(crate) fn best_symmetric(problem: &EfficiencyProblem) -> Result<OptimalGait,
     }
     let efficiency = |(extremal, _): &(Extremal, Origin)| extremal.efficiency(&model);
     led_to.sort_by(|a, b| efficiency(b).total_cmp(&efficiency(a)));
-    let mut best: Option<Found> = None;
+    let mut best: Option<PolishedGait> = None;
     for (extremal, origin) in led_to {
         match free(problem, &model, extremal, origin) {
             // An optimum among all curves has priority over one among symmetric gaits.
@@ -239,7 +239,7 @@ pub fn efficiency_from(
 fn within_bounds(
     problem: &EfficiencyProblem,
     model: &Model<f64>,
-    free: &Found,
+    free: &PolishedGait,
 ) -> Result<OptimalGait, EfficiencyError> {
     let walls = walls(&problem.bounds, &problem.swimmer.links);
     let depths = free.gait.phi().iter().filter_map(|phi| walls.nearest(phi));
@@ -268,7 +268,7 @@ fn free(
     model: &Model<f64>,
     extremal: Extremal,
     origin: Origin,
-) -> Result<Found, EfficiencyError> {
+) -> Result<PolishedGait, EfficiencyError> {
     let (branch, order) = (problem.branch, origin.order);
     let efficiency = extremal.efficiency(model);
     let found = finished((problem, model, &Bounds::default()), extremal, origin).map_err(|_| {
@@ -297,7 +297,7 @@ fn free(
             definition: branch.definition(),
         });
     }
-    Ok(Found {
+    Ok(PolishedGait {
         gait: certified(branch, found.gait)?,
         ..found
     })
@@ -317,7 +317,7 @@ fn certified(branch: Branch, gait: OptimalGait) -> Result<OptimalGait, Efficienc
 
 /// Gait and the extremal from which it was sampled.
 #[derive(Debug, Clone)]
-struct Found {
+struct PolishedGait {
     gait: OptimalGait,
     extremal: Extremal,
 }
@@ -327,7 +327,7 @@ fn finished(
     (problem, model, bounds): (&EfficiencyProblem, &Model<f64>, &Bounds),
     extremal: Extremal,
     origin: Origin,
-) -> Result<Found, Unpolished> {
+) -> Result<PolishedGait, Unpolished> {
     let samples = 4 * problem.quarter_samples.max(16);
     let mut gait = gait((&problem.swimmer, model, bounds), &extremal, samples)?;
     // Gaits that cross themselves belong to the atlas.
@@ -340,5 +340,5 @@ fn finished(
         method: origin.method,
         direct_efficiency: origin.direct_efficiency,
     });
-    Ok(Found { gait, extremal })
+    Ok(PolishedGait { gait, extremal })
 }

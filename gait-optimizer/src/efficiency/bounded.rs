@@ -9,7 +9,7 @@ use std::fmt;
 use swimmer_model::{Links, Model};
 
 use super::chain::Origin;
-use super::{Branch, EfficiencyError, EfficiencyProblem, Found, certified, finished};
+use super::{Branch, EfficiencyError, EfficiencyProblem, PolishedGait, certified, finished};
 use crate::certificate::{crossings, turning_number};
 use crate::extremal::Extremal;
 use crate::extremal::continuation::{Ended, Path, Tightness};
@@ -46,7 +46,7 @@ impl fmt::Display for Reached {
 pub(super) fn bounded(
     problem: &EfficiencyProblem,
     model: &Model<f64>,
-    free: &Found,
+    free: &PolishedGait,
 ) -> Result<OptimalGait, EfficiencyError> {
     let (branch, bounds) = (problem.branch, &problem.bounds);
     let start = &free.extremal;

@@ -1,7 +1,7 @@
 //! Warm start: the efficiency gait of a problem from that of a neighbouring problem, by shooting from its arcs.
 
 use super::chain::Origin;
-use super::{EfficiencyProblem, Found, finished};
+use super::{EfficiencyProblem, PolishedGait, finished};
 use crate::extremal::continuation::within_walls;
 use crate::extremal::{Extremal, polish, polish_chain, walls};
 use crate::optimal_gait::OptimalGait;
@@ -58,7 +58,7 @@ impl EfficiencySeed {
             None => polish(&model, &walls, &self.gait.gait().ok()?, true),
         };
         let of = (problem, &model, &problem.bounds);
-        let Found { gait, extremal } = finished(of, extremal.ok()?, Origin::arcs()).ok()?;
+        let PolishedGait { gait, extremal } = finished(of, extremal.ok()?, Origin::arcs()).ok()?;
         (problem.branch.contains(&gait) && gait.certificate.pass()).then_some(Self {
             gait,
             extremal: Some(extremal),
