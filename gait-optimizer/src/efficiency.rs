@@ -21,7 +21,7 @@ use crate::extremal::{Extremal, Unpolished, polish, walls};
 use crate::immobile::refuse_immobile;
 use crate::optimal_gait::{EfficiencyFigures, OptimalGait};
 use crate::problem::{GaitClass, InvalidProblem, validated};
-pub use bounded::Reached;
+pub use bounded::ReachedBounds;
 pub(crate) use chain::starts;
 use chain::{Origin, same_gait};
 pub use error::EfficiencyError;

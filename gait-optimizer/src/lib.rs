@@ -107,7 +107,7 @@ pub use displacement::{
     DisplacementError, DisplacementProblem, Fates, Heading, displacement, displacement_near,
 };
 pub use efficiency::{
-    Branch, Direct, EfficiencyError, EfficiencyProblem, EfficiencySeed, Method, Reached,
+    Branch, Direct, EfficiencyError, EfficiencyProblem, EfficiencySeed, Method, ReachedBounds,
     efficiency, efficiency_from,
 };
 pub use height_map::{

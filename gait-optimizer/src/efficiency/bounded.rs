@@ -21,14 +21,14 @@ const FADED: f64 = 1e-4;
 
 /// Bounds at which a branch ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Reached {
+pub struct ReachedBounds {
     /// Bound on both angles \[rad\].
     pub max_angle: f64,
     /// φ₁ = φ₂ \[rad\] at which the tips of the shortened and of the full side links meet, while the side links count as shortened.
     pub tips_meet: Option<[f64; 2]>,
 }
 
-impl fmt::Display for Reached {
+impl fmt::Display for ReachedBounds {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "|phi| <= {:.6} rad", self.max_angle)?;
         match self.tips_meet {
@@ -142,7 +142,7 @@ fn branch_ends(branch: Branch, links: &Links<f64>, ended: &Ended) -> EfficiencyE
     let tips = |share: f64| (-links.middle / (2.0 * share * links.front)).acos();
     EfficiencyError::BranchEnds {
         branch,
-        reached: Reached {
+        reached: ReachedBounds {
             max_angle: at.max_angle,
             tips_meet: (at.share > 0.0).then(|| [tips(at.share), tips(1.0)].map(or_folded)),
         },

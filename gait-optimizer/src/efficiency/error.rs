@@ -1,6 +1,6 @@
 //! Errors of the search for efficiency gaits.
 
-use super::{Branch, Reached};
+use super::{Branch, ReachedBounds};
 use crate::immobile::Immobile;
 use crate::optimal_gait::OptimalGait;
 use crate::problem::InvalidProblem;
@@ -20,7 +20,7 @@ pub enum EfficiencyError {
         /// Branch of the gait.
         branch: Branch,
         /// Bounds at the end of the branch.
-        reached: Reached,
+        reached: ReachedBounds,
         /// Reason for the end.
         reason: String,
     },
