@@ -118,7 +118,7 @@ pub use optimal_gait::{EfficiencyFigures, OptimalGait};
 pub use parallel::Watch;
 pub use problem::InvalidProblem;
 pub use robust::{
-    Holder, Over, RobustError, RobustGait, RobustSpeed, Robustness, Uncertainty, Values,
+    Over, RobustError, RobustGait, RobustSpeed, Robustness, Uncertainty, Values, WorstCaseMember,
     robust_displacement, robust_efficiency, robust_speed,
 };
 pub use sideways::{Sideways, SidewaysError, SidewaysProblem, sideways};

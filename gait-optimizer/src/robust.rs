@@ -89,7 +89,7 @@ impl Values {
 
 /// A swimmer that holds the worst case.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Holder {
+pub struct WorstCaseMember {
     /// r_s \[m\].
     pub sphere_radius: f64,
     /// χ.
@@ -110,7 +110,7 @@ pub struct Robustness {
     /// Values of the nominal optimum of the same family.
     pub nominal: Values,
     /// The swimmers that hold the worst case; none for a mean.
-    pub held_by: Vec<Holder>,
+    pub held_by: Vec<WorstCaseMember>,
     /// Number of swimmers that the search for the worst case starts with, and number of swimmers in the mean.
     pub members: (usize, usize),
     /// `true` if the gait lies on another branch of optima than the nominal one and does not lead back to it: it is better for
@@ -141,7 +141,7 @@ impl Robustness {
     ) -> Result<(Self, Certificate), RobustError> {
         let crossing = |member: &Member| cycle.turned(member.gain).links_cross(&member.model);
         let holders = found.holders().iter();
-        let holders = holders.map(|&(member, multiplier)| Holder {
+        let holders = holders.map(|&(member, multiplier)| WorstCaseMember {
             sphere_radius: member.swimmer.sphere_radius,
             chi: member.swimmer.chi,
             gain: member.gain,

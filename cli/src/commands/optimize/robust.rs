@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 use gait_optimizer::{
-    Condition, Holder, Objective, OptimalGait, Over, RobustError, RobustGait, Robustness,
-    Uncertainty, Values,
+    Condition, Objective, OptimalGait, Over, RobustError, RobustGait, Robustness, Uncertainty,
+    Values, WorstCaseMember,
 };
 use swimmer_files::{ArcKind, SwimmerFile};
 use swimmer_model::{Gait as _, Model};
@@ -149,7 +149,7 @@ pub(super) fn tell_robustness(answer: &mut Document, found: &Robustness, quantit
     let (robust, nominal) = (&found.values, &found.nominal);
     let [crossing, nominal_crossing] = found.links_cross;
     let values = |values: &Values| object! {"nominal": values.nominal, "worst": values.worst, "mean": values.mean};
-    let holder = |holder: &Holder| {
+    let holder = |holder: &WorstCaseMember| {
         object! {
             "sphere_radius_m": holder.sphere_radius,
             "chi": holder.chi,
