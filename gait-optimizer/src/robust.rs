@@ -49,7 +49,7 @@ use crate::immobile::refuse_immobile;
 use crate::member::Member;
 use crate::optimal_gait::OptimalGait;
 use arcs::Arcs;
-use ensemble::{Ensemble, Found};
+use ensemble::{Ensemble, RobustSolution};
 pub use error::RobustError;
 use fourier::FourierFamily;
 use newton::{Design, Family};
@@ -134,7 +134,7 @@ impl Robustness {
     fn certified<D: Design>(
         ensemble: &Ensemble<'_>,
         design: &D,
-        found: &Found<D::Point>,
+        found: &RobustSolution<D::Point>,
         nominal: Values,
         [cycle, optimum]: [&Cycle; 2],
         certificate: Certificate,
@@ -318,7 +318,7 @@ const MOST_ORDER: usize = 12;
 fn certified<F: Family>(
     ensemble: &Ensemble<'_>,
     family: &F,
-    found: &Found<F::Point>,
+    found: &RobustSolution<F::Point>,
     nominal: Values,
     bounds: &Bounds,
     optimum: &Cycle,

@@ -5,7 +5,7 @@ use swimmer_files::Bounds;
 use swimmer_model::Links;
 
 use super::Values;
-use super::ensemble::{Ensemble, Found};
+use super::ensemble::{Ensemble, RobustSolution};
 use super::newton::Design;
 use crate::certificate::{Check, Condition, simple_and_turning_once};
 use crate::cycle::Cycle;
@@ -40,7 +40,7 @@ pub(super) fn overstepped(cycle: &Cycle, bounds: &Bounds, links: &Links<f64>) ->
 pub(super) fn swum_again<D: Design>(
     ensemble: &Ensemble<'_>,
     design: &D,
-    found: &Found<D::Point>,
+    found: &RobustSolution<D::Point>,
     cycle: &Cycle,
     values: &Values,
 ) -> Vec<Check> {

@@ -28,13 +28,13 @@ pub(super) struct Lowest {
 }
 
 /// Solution, with the members that its first-order condition weights: for the worst case, the active ones.
-pub(super) struct Found<P> {
+pub(super) struct RobustSolution<P> {
     pub(super) over: Over,
     pub(super) point: P,
     pub(super) weighted: Vec<(Member, f64)>,
 }
 
-impl<P> Found<P> {
+impl<P> RobustSolution<P> {
     /// Active members of the worst case; empty for a mean.
     pub(super) fn holders(&self) -> &[(Member, f64)] {
         match self.over {

@@ -7,7 +7,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::ensemble::{Ensemble, Found, Lowest};
+use super::ensemble::{Ensemble, Lowest, RobustSolution};
 use super::newton::Design;
 use super::{Over, RobustError};
 use crate::member::Member;
@@ -37,16 +37,16 @@ pub(super) fn find<D: Design>(
     design: &D,
     ensemble: &Ensemble<'_>,
     over: Over,
-) -> Result<Found<D::Point>, RobustError> {
+) -> Result<RobustSolution<D::Point>, RobustError> {
     if over == Over::Mean {
-        return Ok(Found {
+        return Ok(RobustSolution {
             over,
             point: ensemble.solve(design, &design.start(), &ensemble.normal)?,
             weighted: ensemble.normal.clone(),
         });
     }
     let held = worst(design, ensemble)?;
-    Ok(Found {
+    Ok(RobustSolution {
         over,
         weighted: held.weighted(),
         point: held.point,
