@@ -40,7 +40,7 @@ pub(crate) struct Jet {
 }
 
 /// A place on an arc: shape, its rate over s, and how both change with each parameter.
-pub(crate) struct Place<const P: usize> {
+pub(crate) struct ArcPoint<const P: usize> {
     pub(crate) phi: Vector2<f64>,
     pub(crate) rate: Vector2<f64>,
     pub(crate) d_phi: [Vector2<f64>; P],
@@ -61,9 +61,9 @@ impl Shape {
         [from, to]: &[Vector2<f64>; 2],
         bends: &[f64],
         s: f64,
-    ) -> Place<P> {
+    ) -> ArcPoint<P> {
         let way = to - from;
-        let mut place = Place {
+        let mut place = ArcPoint {
             phi: from + way * s,
             rate: way,
             d_phi: [Vector2::zeros(); P],
@@ -150,7 +150,7 @@ impl Shape {
     ) -> Jet {
         let parameters = 4 + self.bends();
         let places = rule.nodes.iter().map(|&s| self.place::<P>(ends, bends, s));
-        let places: Vec<Place<P>> = places.collect();
+        let places: Vec<ArcPoint<P>> = places.collect();
         let mut nodes: Vec<(Vector3<f64>, [Vector3<f64>; P])> = Vec::with_capacity(places.len());
         let phi = places.iter().map(|place| place.phi);
         Batch::of(model).each(First, phi, |node, first| {
@@ -197,7 +197,7 @@ impl Shape {
 
 /// Adds `count` bends to the angle of one joint.
 fn bend<const P: usize>(
-    place: &mut Place<P>,
+    place: &mut ArcPoint<P>,
     joint: usize,
     (count, bends): (usize, &[f64]),
     s: f64,
@@ -241,7 +241,12 @@ fn add(sum: &mut [f64; 4], weight: f64, terms: [f64; 4]) {
 }
 
 /// Puts a place onto the curve of a piece of the clearance, above the same angle of the joint that sets the pace.
-fn along<const P: usize>(clearance: &Clearance, piece: Piece, pace: usize, place: &mut Place<P>) {
+fn along<const P: usize>(
+    clearance: &Clearance,
+    piece: Piece,
+    pace: usize,
+    place: &mut ArcPoint<P>,
+) {
     let other = 1 - pace;
     for _ in 0..30 {
         let level = clearance.level(piece, &place.phi);

@@ -5,7 +5,7 @@ use std::ops::Range;
 use nalgebra::{DMatrix, DVector, Vector2};
 use swimmer_model::Model;
 
-use super::arc::{Jet, MOST_PARAMETERS, Place, Shape};
+use super::arc::{ArcPoint, Jet, MOST_PARAMETERS, Shape};
 use super::quadrature::Rule;
 
 /// Layout of a chain's unknowns in one vector: corners (2n), times of the arcs (n), then the bends of each arc.
@@ -91,7 +91,7 @@ impl Layout {
     }
 
     /// Returns the point of an arc at s in \[0, 1\].
-    pub(crate) fn place(&self, z: &DVector<f64>, arc: usize, s: f64) -> Place<MOST_PARAMETERS> {
+    pub(crate) fn place(&self, z: &DVector<f64>, arc: usize, s: f64) -> ArcPoint<MOST_PARAMETERS> {
         self.shapes[arc].place(&self.ends(z, arc), self.bends(z, arc), s)
     }
 

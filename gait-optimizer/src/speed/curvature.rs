@@ -6,7 +6,7 @@
 use nalgebra::{Vector2, Vector3};
 use swimmer_model::{Model, SecondDerivatives};
 
-use super::arc::{MOST_PARAMETERS, Place, Shape};
+use super::arc::{ArcPoint, MOST_PARAMETERS, Shape};
 use super::quadrature::Rule;
 use crate::batch::{Batch, Second};
 
@@ -41,7 +41,7 @@ impl Shape {
     ) {
         let count = 4 + self.bends();
         let places = rule.nodes.iter().map(|&s| self.place::<P>(ends, bends, s));
-        let places: Vec<Place<P>> = places.collect();
+        let places: Vec<ArcPoint<P>> = places.collect();
         let mut nodes: Vec<Node<P>> = Vec::with_capacity(places.len());
         let phi = places.iter().map(|place| place.phi);
         Batch::of(model).each(Second, phi, |number, second| {
@@ -134,7 +134,7 @@ struct Node<const P: usize> {
 }
 
 impl<const P: usize> Node<P> {
-    fn new(place: &Place<P>, second: &SecondDerivatives<f64>, count: usize) -> Self {
+    fn new(place: &ArcPoint<P>, second: &SecondDerivatives<f64>, count: usize) -> Self {
         let first = &second.first;
         let [one, two] = first.d_connection.map(|d| d * place.rate);
         let mut slopes = [Vector3::zeros(); P];
@@ -152,7 +152,7 @@ impl<const P: usize> Node<P> {
     /// Adds the second derivatives of the body velocity, contracted with a covector.
     fn add_local(
         &self,
-        place: &Place<P>,
+        place: &ArcPoint<P>,
         covector: &Vector3<f64>,
         count: usize,
         sums: &mut [[f64; P]; P],
