@@ -84,7 +84,7 @@ struct Iterate {
 }
 
 /// All that is worked out at one iterate.
-struct Look {
+struct Evaluation {
     jets: Vec<Jet>,
     net: chain::Net,
     inequalities: Vec<Inequality>,
@@ -181,7 +181,7 @@ impl<'a> Method<'a> {
         (here.barrier < 1e-5).then(|| self.finish(&here, look.net))
     }
 
-    fn look(&self, here: &Iterate) -> Option<Look> {
+    fn look(&self, here: &Iterate) -> Option<Evaluation> {
         let Iterate { z, y, .. } = here;
         let layout = &self.layout;
         let jets = layout.jets(self.setting.model, &self.rule, z);
@@ -206,7 +206,7 @@ impl<'a> Method<'a> {
                 f64::from(u8::from(i == joint))
             }));
         }
-        Some(Look {
+        Some(Evaluation {
             inequalities: self.inequalities(z),
             jets,
             net,
@@ -217,7 +217,7 @@ impl<'a> Method<'a> {
     }
 
     /// Second derivatives with the inequalities eliminated, and minus the barrier's gradient.
-    fn system(&self, here: &Iterate, look: &Look) -> (DMatrix<f64>, DVector<f64>) {
+    fn system(&self, here: &Iterate, look: &Evaluation) -> (DMatrix<f64>, DVector<f64>) {
         let of = (&self.layout, &self.rule, look.jets.as_slice());
         let with = (&look.net, here.y.as_slice());
         let mut matrix = self.setting.hessian(of, &here.z, with);
@@ -248,7 +248,7 @@ impl<'a> Method<'a> {
         (matrix, right)
     }
 
-    fn direction(&self, here: &mut Iterate, look: &Look) -> Option<Direction> {
+    fn direction(&self, here: &mut Iterate, look: &Evaluation) -> Option<Direction> {
         let (matrix, right) = self.system(here, look);
         let (step, dy) = loop {
             let mut damped = matrix.clone();
@@ -329,7 +329,7 @@ impl<'a> Method<'a> {
     }
 }
 
-impl Look {
+impl Evaluation {
     /// Residual of the barrier problem's KKT conditions.
     fn error(&self, here: &Iterate) -> f64 {
         let mut dual = self.gradient.clone();
