@@ -32,7 +32,7 @@ pub(super) struct Piece {
 }
 
 /// A place with what is run along there.
-type Place = (Motion, OnCurve);
+type WalkState = (Motion, OnCurve);
 
 /// Curvatures this small count as zero.
 const ZERO: f64 = 1e-13;
@@ -129,7 +129,7 @@ impl Domain<'_> {
     }
 
     /// Along one motion to where another one takes over; to no other one where it comes round.
-    fn arc(self, (motion, from): Place) -> Result<(Piece, Option<Place>), TurningError> {
+    fn arc(self, (motion, from): WalkState) -> Result<(Piece, Option<WalkState>), TurningError> {
         let level = self.level(motion);
         let value = |event, at: &OnCurve| {
             let (value, gradient) = self.value(event, motion, &at.phi);
@@ -228,7 +228,7 @@ impl Domain<'_> {
         motion: Motion,
         event: Event<Infallible>,
         at: &OnCurve,
-    ) -> Result<Place, TurningError> {
+    ) -> Result<WalkState, TurningError> {
         let next = match event {
             Event::PieceEnd => motion.next_piece(),
             Event::Bound(index) => {
@@ -242,7 +242,7 @@ impl Domain<'_> {
     }
 
     /// Start of a motion.
-    fn on(self, motion: Motion, phi: Vector2<f64>) -> Result<Place, TurningError> {
+    fn on(self, motion: Motion, phi: Vector2<f64>) -> Result<WalkState, TurningError> {
         let on = self.level(motion).corrected(&phi, None, 1e-6);
         let on = on.ok_or_else(|| TurningError::lost(phi, "zero-level curves cross"))?;
         Ok((motion, OnCurve { phi, ..on }))
