@@ -22,9 +22,9 @@ fn certificate(swimmer: &Swimmer<f64>, file: &GaitFile) -> Certificate {
 }
 
 /// A gait's name, whose it is and its file.
-type Told = (String, Swimmer<f64>, GaitFile);
+type NamedGait = (String, Swimmer<f64>, GaitFile);
 
-fn told(gait: &OptimalGait) -> Told {
+fn told(gait: &OptimalGait) -> NamedGait {
     let OptimalGait {
         swimmer,
         objective,
@@ -38,7 +38,7 @@ fn told(gait: &OptimalGait) -> Told {
 }
 
 /// Optima of three objectives, bounds of every kind.
-fn gaits() -> Vec<Told> {
+fn gaits() -> Vec<NamedGait> {
     let mut gaits = Vec::new();
     for swimmer in [Swimmer::purcell(), Swimmer::robot()] {
         for (max_angle, min_angle, sector, no_overlap) in [
@@ -82,7 +82,7 @@ fn gaits() -> Vec<Told> {
 }
 
 /// Gaits along the bound that keeps links apart, past its corner, and bent round that.
-fn more_gaits() -> [Told; 3] {
+fn more_gaits() -> [NamedGait; 3] {
     let apart = Bounds::within(2.8).apart(0.0);
     let sector = Bounds {
         sector: true,
