@@ -24,13 +24,13 @@ const SEED: u64 = 20_260_703;
 const PATIENCE: Duration = Duration::from_mins(1);
 
 /// Result of a solver.
-enum Answer {
+enum SolverOutcome {
     Gaits(Vec<OptimalGait>),
     Reason { kind: String, text: String },
     Wrong(String),
 }
 
-impl Answer {
+impl SolverOutcome {
     /// The reason's kind is the name of its variant.
     fn refused(error: &(impl Display + Debug)) -> Self {
         let kind = format!("{error:?}");
@@ -44,15 +44,17 @@ impl Answer {
     }
 }
 
-fn most_efficient(case: &Case, branch: Branch) -> Answer {
+fn most_efficient(case: &Case, branch: Branch) -> SolverOutcome {
     let problem = EfficiencyProblem {
         bounds: case.bounds,
         ..EfficiencyProblem::new(case.swimmer, branch)
     };
     let gait = match efficiency(&problem) {
         Ok(gait) => gait,
-        Err(error) if error.is_bad_input() => return Answer::Wrong(format!("bad input: {error}")),
-        Err(error) => return Answer::refused(&error),
+        Err(error) if error.is_bad_input() => {
+            return SolverOutcome::Wrong(format!("bad input: {error}"));
+        }
+        Err(error) => return SolverOutcome::refused(&error),
     };
     // A size smaller is allowed by the bounds, and worse.
     let phi: Vec<_> = gait.phi().iter().map(|phi| phi * 0.99).collect();
@@ -73,30 +75,30 @@ fn most_efficient(case: &Case, branch: Branch) -> Answer {
         Branch::Large => -gait.displacement,
     };
     if signed <= 0.0 {
-        return Answer::Wrong(format!("{branch} gait with X = {} m", gait.displacement));
+        return SolverOutcome::Wrong(format!("{branch} gait with X = {} m", gait.displacement));
     }
     if other > gait.efficiency {
-        return Answer::Wrong(format!(
+        return SolverOutcome::Wrong(format!(
             "0.99 of its size has efficiency {other}, itself {}",
             gait.efficiency
         ));
     }
-    Answer::Gaits(vec![gait])
+    SolverOutcome::Gaits(vec![gait])
 }
 
-fn most_turning(case: &Case) -> Answer {
+fn most_turning(case: &Case) -> SolverOutcome {
     match turning(&TurningProblem {
         swimmer: case.swimmer,
         bounds: case.bounds,
     }) {
-        Ok(found) if found.gait.rotation > 0.0 => Answer::Gaits(vec![found.gait]),
-        Ok(found) => Answer::Wrong(format!("turns {} rad", found.gait.rotation)),
-        Err(error) => Answer::refused(&error),
+        Ok(found) if found.gait.rotation > 0.0 => SolverOutcome::Gaits(vec![found.gait]),
+        Ok(found) => SolverOutcome::Wrong(format!("turns {} rad", found.gait.rotation)),
+        Err(error) => SolverOutcome::refused(&error),
     }
 }
 
 /// With few starts.
-fn most_sideways(case: &Case) -> Answer {
+fn most_sideways(case: &Case) -> SolverOutcome {
     let problem = SidewaysProblem {
         bounds: case.bounds,
         starts: 4,
@@ -106,19 +108,19 @@ fn most_sideways(case: &Case) -> Answer {
         Ok(found) => {
             let own = found.gait.lateral_over_length.abs() - found.lateral_over_length;
             if own.abs() > 1e-12 || found.lateral_over_length <= 0.0 {
-                return Answer::Wrong(format!(
+                return SolverOutcome::Wrong(format!(
                     "|Y|/L = {}, its gait {}",
                     found.lateral_over_length, found.gait.lateral_over_length
                 ));
             }
-            Answer::Gaits(vec![found.gait])
+            SolverOutcome::Gaits(vec![found.gait])
         }
-        Err(error) => Answer::refused(&error),
+        Err(error) => SolverOutcome::refused(&error),
     }
 }
 
 /// With few starts; every optimum counts.
-fn small_atlas(case: &Case, objective: Objective) -> Answer {
+fn small_atlas(case: &Case, objective: Objective) -> SolverOutcome {
     let problem = AtlasProblem {
         bounds: case.bounds,
         starts: 4,
@@ -127,18 +129,18 @@ fn small_atlas(case: &Case, objective: Objective) -> Answer {
     };
     let found = match atlas(&problem) {
         Ok(found) => found,
-        Err(error) => return Answer::Wrong(format!("no atlas: {error}")),
+        Err(error) => return SolverOutcome::Wrong(format!("no atlas: {error}")),
     };
     let told: usize = found.optima.iter().map(|optimum| optimum.found).sum();
     let rest = found.unsettled + found.left + found.uncertified;
     if told + rest != found.starts {
-        return Answer::Wrong(format!(
+        return SolverOutcome::Wrong(format!(
             "{told} + {rest} of {} starts accounted for",
             found.starts
         ));
     }
     if found.optima.is_empty() {
-        return Answer::Reason {
+        return SolverOutcome::Reason {
             kind: "Empty".to_owned(),
             text: format!(
                 "{} starts: {} unsettled, {} left, {} uncertified",
@@ -146,20 +148,20 @@ fn small_atlas(case: &Case, objective: Objective) -> Answer {
             ),
         };
     }
-    Answer::Gaits(found.optima.into_iter().map(|one| one.gait).collect())
+    SolverOutcome::Gaits(found.optima.into_iter().map(|one| one.gait).collect())
 }
 
 /// With few starts.
-fn fastest_gait(case: &Case) -> Answer {
+fn fastest_gait(case: &Case) -> SolverOutcome {
     let problem = SpeedProblem {
         bounds: case.bounds,
         starts: 8,
         ..SpeedProblem::new(case.swimmer, [1.0, 0.8])
     };
     match fastest(&problem) {
-        Ok(found) if found.speed_over_length > 0.0 => Answer::Gaits(vec![found.gait]),
-        Ok(found) => Answer::Wrong(format!("{} L a second", found.speed_over_length)),
-        Err(error) => Answer::refused(&error),
+        Ok(found) if found.speed_over_length > 0.0 => SolverOutcome::Gaits(vec![found.gait]),
+        Ok(found) => SolverOutcome::Wrong(format!("{} L a second", found.speed_over_length)),
+        Err(error) => SolverOutcome::refused(&error),
     }
 }
 
@@ -261,7 +263,7 @@ fn ask((objective, solve): Kind, every: usize) {
             slowest = (seconds, name.clone());
         }
         match answer {
-            Answer::Gaits(found) => {
+            SolverOutcome::Gaits(found) => {
                 let faults: Vec<String> =
                     found.iter().flat_map(|gait| faults(&case, gait)).collect();
                 gaits += found.len();
@@ -276,12 +278,12 @@ fn ask((objective, solve): Kind, every: usize) {
                     wrong.push(format!("{name}: {}", faults.join("; ")));
                 }
             }
-            Answer::Reason { kind, text } => {
+            SolverOutcome::Reason { kind, text } => {
                 assert!(!text.is_empty(), "{name}: no reason given");
                 println!("{objective} {seconds:.2} s, {kind}: {text} ({name})");
                 *reasons.entry(kind).or_default() += 1;
             }
-            Answer::Wrong(what) => {
+            SolverOutcome::Wrong(what) => {
                 println!("{objective} WRONG {name}: {what}");
                 wrong.push(format!("{name}: {what}"));
             }
@@ -306,7 +308,7 @@ fn ask((objective, solve): Kind, every: usize) {
 }
 
 /// Kind of gait, with its solver.
-type Kind = (&'static str, fn(&Case) -> Answer);
+type Kind = (&'static str, fn(&Case) -> SolverOutcome);
 const SMALL: Kind = ("small", |case| most_efficient(case, Branch::Small));
 const LARGE: Kind = ("large", |case| most_efficient(case, Branch::Large));
 const TURNING: Kind = ("turning", most_turning);
