@@ -1,7 +1,7 @@
 //! Effects of authorised requests. Each arm of [`Brain::act`] is the whole effect of one request; [`super::requests`] has
 //! checked its authority.
 
-use super::requests::Asked;
+use super::requests::ReplyAddress;
 use super::settings::Settings;
 use super::state::State;
 use super::work::Work;
@@ -23,7 +23,7 @@ const LATER: Outcome = Ok(None);
 
 impl Brain {
     /// Applies a request. Returns `None` if the reply comes later.
-    pub(super) fn act(&mut self, now_us: u64, asked: Asked, request: &Request) -> Outcome {
+    pub(super) fn act(&mut self, now_us: u64, asked: ReplyAddress, request: &Request) -> Outcome {
         match request {
             Request::Status => Ok(Some(Reply::Status(self.status(now_us)))),
             Request::Counters => Ok(Some(Reply::Counters(self.counters()))),
@@ -184,7 +184,7 @@ impl Brain {
     }
 
     /// Schedules the uploaded table to play after the present play.
-    fn follow(&mut self, asked: Asked, follow: Follow) -> Outcome {
+    fn follow(&mut self, asked: ReplyAddress, follow: Follow) -> Outcome {
         let Some(under_way) = self.state.play() else {
             return Err(Refusal::WrongState(self.state.name()));
         };
@@ -204,7 +204,7 @@ impl Brain {
         self.commit(asked, follow.upload, Some(play))
     }
 
-    fn commit(&mut self, asked: Asked, upload: u16, follow: Option<Play>) -> Outcome {
+    fn commit(&mut self, asked: ReplyAddress, upload: u16, follow: Option<Play>) -> Outcome {
         self.only_idle()?;
         if let Err(refusal) = self.tables.complete(upload) {
             if matches!(refusal, Refusal::CrcMismatch { .. }) {
@@ -261,7 +261,7 @@ impl Brain {
         DONE
     }
 
-    fn play(&mut self, asked: Asked, play: Play) -> Outcome {
+    fn play(&mut self, asked: ReplyAddress, play: Play) -> Outcome {
         match self.state {
             State::Holding { .. } => {}
             State::EStopped => return Err(Refusal::EStopped),

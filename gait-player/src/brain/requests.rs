@@ -11,7 +11,7 @@ use link_protocol::{
 
 /// Reply address of a frame: its header, its transport, and whether it belongs to the open session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Asked {
+pub(crate) struct ReplyAddress {
     pub(super) header: Header,
     pub(super) transport: Transport,
     pub(super) ours: bool,
@@ -26,7 +26,7 @@ impl Brain {
         admission: Admission,
     ) {
         let header = received.header;
-        let asked = Asked {
+        let asked = ReplyAddress {
             header,
             transport,
             ours: admission == Admission::Ours,
@@ -55,7 +55,7 @@ impl Brain {
                     ..header
                 };
                 self.refuse(
-                    Asked { header, ..asked },
+                    ReplyAddress { header, ..asked },
                     Refusal::Version {
                         min: PROTOCOL_MIN,
                         current: PROTOCOL_CURRENT,
@@ -68,7 +68,7 @@ impl Brain {
         }
     }
 
-    fn greet(&mut self, asked: Asked, hello: &Hello) {
+    fn greet(&mut self, asked: ReplyAddress, hello: &Hello) {
         let understood =
             hello.protocol_min <= PROTOCOL_CURRENT && hello.protocol_current >= PROTOCOL_MIN;
         // Session 0 stands for a refused greeting; the reply states the reason.
@@ -91,14 +91,14 @@ impl Brain {
     }
 
     /// Counts a frame of another session. Returns true if the frame belongs to the open session.
-    fn count_stale(&mut self, asked: Asked) -> bool {
+    fn count_stale(&mut self, asked: ReplyAddress) -> bool {
         if !asked.ours {
             count(&mut self.counted.stale);
         }
         asked.ours
     }
 
-    fn pong(&mut self, now_us: u64, asked: Asked, host_us: u64) {
+    fn pong(&mut self, now_us: u64, asked: ReplyAddress, host_us: u64) {
         let pong = Message::Pong(Pong {
             host_us,
             received_us: now_us,
@@ -107,7 +107,13 @@ impl Brain {
         self.send(asked.transport, asked.header, &pong, true, What::Answer);
     }
 
-    fn request(&mut self, now_us: u64, asked: Asked, request: &Request, admission: Admission) {
+    fn request(
+        &mut self,
+        now_us: u64,
+        asked: ReplyAddress,
+        request: &Request,
+        admission: Admission,
+    ) {
         let needs = request
             .class(|| self.settings_held().is_widened_by(request))
             .needs();
@@ -177,7 +183,7 @@ impl Brain {
 
     /// Enforces the authority table for a request of the open session, before the request is evaluated. [`super::persist`]
     /// enforces the wear budget.
-    fn authorize(&self, now_us: u64, asked: Asked, needs: Needs) -> Result<(), Refusal> {
+    fn authorize(&self, now_us: u64, asked: ReplyAddress, needs: Needs) -> Result<(), Refusal> {
         let state = self.state.name();
         if !needs.state.includes(state) {
             return Err(Refusal::WrongState(state));
@@ -193,7 +199,7 @@ impl Brain {
     }
 
     /// Returns true if a person is at the robot: the request came over USB, or the bench window is open.
-    fn is_present(&self, now_us: u64, asked: Asked) -> bool {
+    fn is_present(&self, now_us: u64, asked: ReplyAddress) -> bool {
         asked.transport == Transport::Usb || self.bench.open(now_us)
     }
 
@@ -223,7 +229,7 @@ impl Brain {
     }
 
     /// Sends the stored reply to a repeated request.
-    fn reply_again(&mut self, asked: Asked) {
+    fn reply_again(&mut self, asked: ReplyAddress) {
         let mut body = [0; MAX_BODY];
         let kept = self.session.kept().and_then(|kept| {
             let place = body.get_mut(..kept.len())?;
@@ -240,7 +246,7 @@ impl Brain {
     }
 
     /// Refuses a request that is not of the open session. The reply does not reveal the number of that session.
-    fn turn_away(&mut self, asked: Asked, request: &Request, admission: Admission) {
+    fn turn_away(&mut self, asked: ReplyAddress, request: &Request, admission: Admission) {
         let refusal = match admission {
             // A byte-exact copy was answered once; a second reply would contradict the first.
             Admission::Ours | Admission::Replayed => return,
@@ -256,13 +262,13 @@ impl Brain {
         self.refuse(asked, refusal);
     }
 
-    fn closed_by(&self, asked: Asked, request: &Request) -> bool {
+    fn closed_by(&self, asked: ReplyAddress, request: &Request) -> bool {
         matches!(request, Request::SetKey(key) if *key == self.settings.key)
             && self.session.is_last(asked.header.sequence)
     }
 
     /// Sends the reply to a request and stores it for repeats.
-    pub(super) fn finish(&mut self, asked: Asked, reply: Reply) {
+    pub(super) fn finish(&mut self, asked: ReplyAddress, reply: Reply) {
         if matches!(reply, Reply::Refused(_)) {
             count(&mut self.counted.refused);
         }
@@ -272,17 +278,17 @@ impl Brain {
         self.reply(asked, reply);
     }
 
-    fn refuse(&mut self, asked: Asked, refusal: Refusal) {
+    fn refuse(&mut self, asked: ReplyAddress, refusal: Refusal) {
         count(&mut self.counted.refused);
         self.reply(asked, Reply::Refused(refusal));
     }
 
-    fn reply(&mut self, asked: Asked, reply: Reply) {
+    fn reply(&mut self, asked: ReplyAddress, reply: Reply) {
         self.answer(asked, reply, What::Answer);
     }
 
     /// Sends a reply under session, number and version of its request, because the sender reads that version.
-    fn answer(&mut self, asked: Asked, reply: Reply, what: What) {
+    fn answer(&mut self, asked: ReplyAddress, reply: Reply, what: What) {
         let message = Message::Reply(reply);
         self.send(asked.transport, asked.header, &message, asked.ours, what);
     }

@@ -1,7 +1,7 @@
 //! Work that exceeds a tick: checks of a table or a route. It runs in pieces, and its request gets the reply at the end.
 
 use super::Brain;
-use super::requests::Asked;
+use super::requests::ReplyAddress;
 use super::tables::{Swap, SwapWay};
 use crate::ramp::Ramp;
 use crate::route::{Decision, Route};
@@ -25,19 +25,19 @@ pub(crate) enum Work {
     Idle,
     /// Check of a committed table, with the play to follow if there is one.
     Commit {
-        reply_to: Asked,
+        reply_to: ReplyAddress,
         checker: Checker,
         follow: Option<Play>,
     },
     /// Route of a swap, from the first knot of the playing table to that of the new one.
     Swap {
-        reply_to: Asked,
+        reply_to: ReplyAddress,
         facts: Facts,
         route: Route,
     },
     /// Check of a play's table, then of its route from the commanded angles.
     Play {
-        reply_to: Asked,
+        reply_to: ReplyAddress,
         play: Play,
         route: Option<Route>,
     },
@@ -105,7 +105,7 @@ impl Brain {
         }
     }
 
-    fn table_checked(&mut self, reply_to: Asked, facts: Facts) {
+    fn table_checked(&mut self, reply_to: ReplyAddress, facts: Facts) {
         let allowed = facts
             .allow(&self.limits)
             .and_then(|()| match self.state.play() {
@@ -130,7 +130,7 @@ impl Brain {
     }
 
     /// Schedules a follower for the end of the last cycle, if the play has not ended yet.
-    fn follower_checked(&mut self, reply_to: Asked, facts: Facts, play: Play) {
+    fn follower_checked(&mut self, reply_to: ReplyAddress, facts: Facts, play: Play) {
         let allowed = facts
             .allow(&self.limits)
             .and_then(|()| facts.allow_period(&self.limits, play.period_us))
@@ -148,7 +148,7 @@ impl Brain {
         }
     }
 
-    fn wait_for_swap(&mut self, reply_to: Asked, facts: Facts, way: SwapWay) {
+    fn wait_for_swap(&mut self, reply_to: ReplyAddress, facts: Facts, way: SwapWay) {
         self.tables.wait_for_swap(Swap { facts, way });
         let info = link_protocol::TableInfo {
             knots: self.tables.staging().knots() as u16,
@@ -159,7 +159,7 @@ impl Brain {
         self.finish(reply_to, Reply::Table(Some(info)));
     }
 
-    fn swap_decided(&mut self, reply_to: Asked, facts: Facts, decision: Decision) {
+    fn swap_decided(&mut self, reply_to: ReplyAddress, facts: Facts, decision: Decision) {
         if self.state.play().is_none() {
             return self.activate(reply_to, facts);
         }
@@ -175,7 +175,7 @@ impl Brain {
         }
     }
 
-    fn activate(&mut self, reply_to: Asked, facts: Facts) {
+    fn activate(&mut self, reply_to: ReplyAddress, facts: Facts) {
         self.tables.activate_staging(facts);
         self.persist.table_changed();
         let info = self.table_info();
@@ -184,7 +184,7 @@ impl Brain {
 
     fn advance_play(
         &mut self,
-        reply_to: Asked,
+        reply_to: ReplyAddress,
         play: Play,
         route: Option<Route>,
         facts: Facts,
