@@ -5,7 +5,7 @@ const MAX_LINE: usize = 128;
 
 /// Meaning of a line.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Line {
+pub(super) enum ReplyLine {
     /// The command succeeded.
     Ok,
     /// The command failed. Contains the module's code (hexadecimal digits), or is empty without one.
@@ -16,7 +16,7 @@ pub(super) enum Line {
     Other(String),
 }
 
-impl Line {
+impl ReplyLine {
     fn read(text: &str) -> Self {
         let upper = text.to_ascii_uppercase();
         if upper == "OK" {
@@ -48,7 +48,7 @@ pub(super) struct Lines {
 
 impl Lines {
     /// Adds a byte. Returns the line that it completes, if any.
-    pub(super) fn push(&mut self, byte: u8) -> Option<Line> {
+    pub(super) fn push(&mut self, byte: u8) -> Option<ReplyLine> {
         if byte != b'\n' && byte != b'\r' {
             if self.line.len() < MAX_LINE {
                 self.line.push(byte);
@@ -57,7 +57,7 @@ impl Lines {
         }
         let text = String::from_utf8_lossy(&self.line).trim().to_owned();
         self.line.clear();
-        (!text.is_empty()).then(|| Line::read(&text))
+        (!text.is_empty()).then(|| ReplyLine::read(&text))
     }
 
     /// Discards an incomplete line.
@@ -80,22 +80,22 @@ mod tests {
         };
         assert_eq!(
             read("+UART:9600,0,0\r\nOK\r\n"),
-            [Line::Value("9600,0,0".to_owned()), Line::Ok]
+            [ReplyLine::Value("9600,0,0".to_owned()), ReplyLine::Ok]
         );
         assert_eq!(
             read("VERSION:3.0-20170601\n"),
-            [Line::Value("3.0-20170601".to_owned())]
+            [ReplyLine::Value("3.0-20170601".to_owned())]
         );
         assert_eq!(
             read("+PIN:\"1234\"\r"),
-            [Line::Value("\"1234\"".to_owned())]
+            [ReplyLine::Value("\"1234\"".to_owned())]
         );
-        assert_eq!(read("ERROR:(1D)\r\n"), [Line::Error("1D".to_owned())]);
-        assert_eq!(read("ERROR\r\n"), [Line::Error(String::new())]);
-        assert_eq!(read("FAIL\r\n"), [Line::Error(String::new())]);
+        assert_eq!(read("ERROR:(1D)\r\n"), [ReplyLine::Error("1D".to_owned())]);
+        assert_eq!(read("ERROR\r\n"), [ReplyLine::Error(String::new())]);
+        assert_eq!(read("FAIL\r\n"), [ReplyLine::Error(String::new())]);
         assert_eq!(
             read("AT+NAME=a:b\r\n"),
-            [Line::Other("AT+NAME=a:b".to_owned())]
+            [ReplyLine::Other("AT+NAME=a:b".to_owned())]
         );
         assert_eq!(read("\r\n\r\n"), []);
     }

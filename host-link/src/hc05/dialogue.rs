@@ -3,7 +3,7 @@
 use std::mem::take;
 use std::time::Duration;
 
-use super::answer::{Line, Lines};
+use super::answer::{Lines, ReplyLine};
 use super::{Hc05Error, Module, Outcome, Setting, Uart, Wanted};
 
 /// Time-out of a command. Some modules need most of a second to report their name.
@@ -152,13 +152,13 @@ impl Dialogue {
                 continue;
             }
             match line {
-                Some(Line::Ok) => {
+                Some(ReplyLine::Ok) => {
                     let value = take(&mut self.value);
                     self.answered(&Answer::Ok(value));
                 }
-                Some(Line::Error(code)) => self.answered(&Answer::Error(code)),
-                Some(Line::Value(value)) => self.value = Some(value),
-                Some(Line::Other(text)) => self.echoed |= text == self.command(),
+                Some(ReplyLine::Error(code)) => self.answered(&Answer::Error(code)),
+                Some(ReplyLine::Value(value)) => self.value = Some(value),
+                Some(ReplyLine::Other(text)) => self.echoed |= text == self.command(),
                 None => {}
             }
         }
