@@ -52,7 +52,7 @@ impl Quotes {
 
 /// Outcome of a command.
 #[derive(Debug)]
-enum Answer {
+enum CommandOutcome {
     Ok(Option<String>),
     Error(String),
     Silence,
@@ -124,7 +124,7 @@ impl Dialogue {
         if let Some(sent) = self.sent
             && now >= sent + PATIENCE
         {
-            self.answered(&Answer::Silence);
+            self.answered(&CommandOutcome::Silence);
         }
         match std::mem::replace(&mut self.end, End::Told) {
             End::NotYet => self.end = End::NotYet,
@@ -154,9 +154,9 @@ impl Dialogue {
             match line {
                 Some(ReplyLine::Ok) => {
                     let value = take(&mut self.value);
-                    self.answered(&Answer::Ok(value));
+                    self.answered(&CommandOutcome::Ok(value));
                 }
-                Some(ReplyLine::Error(code)) => self.answered(&Answer::Error(code)),
+                Some(ReplyLine::Error(code)) => self.answered(&CommandOutcome::Error(code)),
                 Some(ReplyLine::Value(value)) => self.value = Some(value),
                 Some(ReplyLine::Other(text)) => self.echoed |= text == self.command(),
                 None => {}
@@ -194,7 +194,7 @@ impl Dialogue {
     }
 
     /// Evaluates the outcome of the present command and proceeds to the next one.
-    fn answered(&mut self, answer: &Answer) {
+    fn answered(&mut self, answer: &CommandOutcome) {
         match self.follow(answer) {
             Ok(Some(step)) => self.step = step,
             Ok(None) => {
@@ -212,32 +212,32 @@ impl Dialogue {
     }
 
     /// Returns the next step; `None` at the end.
-    fn follow(&mut self, answer: &Answer) -> Result<Option<Step>, Hc05Error> {
+    fn follow(&mut self, answer: &CommandOutcome) -> Result<Option<Step>, Hc05Error> {
         match (self.step, answer) {
-            (Step::Knock(_), Answer::Ok(_)) => Ok(Some(Step::Version)),
+            (Step::Knock(_), CommandOutcome::Ok(_)) => Ok(Some(Step::Version)),
             (Step::Knock(tries), _) if tries < KNOCKS => Ok(Some(Step::Knock(tries + 1))),
-            (Step::Knock(tries), Answer::Error(code)) => Err(Hc05Error::NoAtMode {
+            (Step::Knock(tries), CommandOutcome::Error(code)) => Err(Hc05Error::NoAtMode {
                 code: code.clone(),
                 tries,
             }),
-            (Step::Knock(tries), Answer::Silence) => Err(match (self.heard, self.echoed) {
+            (Step::Knock(tries), CommandOutcome::Silence) => Err(match (self.heard, self.echoed) {
                 (_, true) => Hc05Error::Echo,
                 (0, false) => Hc05Error::Silent { tries },
                 (bytes, false) => Hc05Error::Noise { bytes },
             }),
             // A module that restarts may not send OK.
-            (Step::Reset, Answer::Ok(_) | Answer::Silence) => Ok(None),
-            (_, Answer::Silence) => Err(Hc05Error::Stopped {
+            (Step::Reset, CommandOutcome::Ok(_) | CommandOutcome::Silence) => Ok(None),
+            (_, CommandOutcome::Silence) => Err(Hc05Error::Stopped {
                 command: self.command(),
             }),
             (Step::Version, answer) => {
-                if let Answer::Ok(value) = answer {
+                if let CommandOutcome::Ok(value) = answer {
                     self.before.version.clone_from(value);
                 }
                 Ok(Some(Step::Ask(SETTINGS[0])))
             }
             (Step::Ask(setting), answer) => {
-                if let Answer::Ok(Some(value)) = answer {
+                if let CommandOutcome::Ok(Some(value)) = answer {
                     self.quotes |= setting == Setting::Pin && value.starts_with('"');
                     self.before.learn(setting, value);
                 }
@@ -246,18 +246,18 @@ impl Dialogue {
                     .and_then(|at| SETTINGS.get(at + 1))
                     .map_or_else(|| self.all_asked(), |&setting| Some(Step::Ask(setting))))
             }
-            (Step::Set(setting @ Setting::Pin, Quotes::First(on)), Answer::Error(_)) => {
+            (Step::Set(setting @ Setting::Pin, Quotes::First(on)), CommandOutcome::Error(_)) => {
                 Ok(Some(Step::Set(setting, Quotes::Other(!on))))
             }
-            (Step::Set(..), Answer::Ok(_)) => Ok(Some(self.next_to_set())),
-            (Step::AskAgain(setting), Answer::Ok(Some(value))) => {
+            (Step::Set(..), CommandOutcome::Ok(_)) => Ok(Some(self.next_to_set())),
+            (Step::AskAgain(setting), CommandOutcome::Ok(Some(value))) => {
                 self.after.learn(setting, value);
                 self.kept(setting)?;
                 Ok(Some(self.next_to_ask_again()))
             }
             // A setting that was unreadable before need not be readable afterwards.
             (Step::AskAgain(_), _) => Ok(Some(self.next_to_ask_again())),
-            (Step::Set(..) | Step::Reset, Answer::Error(code)) => Err(Hc05Error::Refused {
+            (Step::Set(..) | Step::Reset, CommandOutcome::Error(code)) => Err(Hc05Error::Refused {
                 command: self.command(),
                 code: code.clone(),
             }),
