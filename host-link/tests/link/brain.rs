@@ -9,7 +9,7 @@ use host_link::robot::{Callbacks, Halt, time_left};
 use host_link::testing::{FaultPlan, FaultyPort, Outage};
 use host_link::{LinkError, Port, Robot};
 use link_protocol::{StateName, StopCause};
-use tank_less::{Line, circle, configuration, connect, faulty, upload};
+use tank_less::{FaultyLine, circle, configuration, connect, faulty, upload};
 
 const MS: Duration = Duration::from_millis(1);
 
@@ -117,7 +117,7 @@ fn stops_act_through_a_fifth_of_all_frames_lost() {
 }
 
 /// Adds faults to a line and keeps the session.
-fn spoil(robot: Robot<Line>, faults: &str, seed: u64) -> Robot<FaultyPort<Line>> {
+fn spoil(robot: Robot<FaultyLine>, faults: &str, seed: u64) -> Robot<FaultyPort<FaultyLine>> {
     use host_link::testing::FaultPlan;
     robot.map_port(|port| FaultyPort::new(port, FaultPlan::at_host(faults.parse().unwrap()), seed))
 }

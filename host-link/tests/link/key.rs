@@ -17,13 +17,13 @@ use link_protocol::{
     Binding, Direction, Flags, Header, Key, MAX_ENCODED, Message, Seal, StateName, Telemetry,
     encode, encode_signed,
 };
-use tank_less::{Line, circle, connect, faulty, upload};
+use tank_less::{FaultyLine, circle, connect, faulty, upload};
 
 const MS: Duration = Duration::from_millis(1);
 const KEY: Key = Key(*b"sixteen letters!");
 
 /// Returns a line to a robot that has the key.
-fn keyed_line(seed: u64) -> Line {
+fn keyed_line(seed: u64) -> FaultyLine {
     let mut robot = Robot::connect(faulty(Faults::none(), seed), seed).unwrap();
     robot.set_key(Some(KEY)).unwrap();
     let status = robot.status().unwrap();
@@ -164,7 +164,7 @@ fn a_host_with_a_key_drives_a_robot_without() {
 
 /// Line with a second sender.
 struct Overheard {
-    line: Line,
+    line: FaultyLine,
     forged: Vec<u8>,
 }
 

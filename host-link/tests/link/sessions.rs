@@ -12,7 +12,7 @@ use host_link::{LinkError, Port, Robot};
 use link_protocol::{StateName, crc32c};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use tank_less::{Line, circle, faulty};
+use tank_less::{FaultyLine, circle, faulty};
 
 const MS: Duration = Duration::from_millis(1);
 /// Longest request: five attempts, at most 3 s apart, one beat, and a check of a table in between.
@@ -70,7 +70,7 @@ fn random_faults(rng: &mut ChaCha8Rng) -> Faults {
 /// Operator, with the expected state of the robot.
 struct Operator {
     seed: u64,
-    robot: Robot<Line>,
+    robot: Robot<FaultyLine>,
     rng: ChaCha8Rng,
     tally: Tally,
     /// Active table according to the last successful upload.
@@ -85,7 +85,7 @@ impl Operator {
         &mut self,
         deadline: Duration,
         what: &str,
-        doing: impl FnOnce(&mut Robot<Line>) -> Result<T, LinkError>,
+        doing: impl FnOnce(&mut Robot<FaultyLine>) -> Result<T, LinkError>,
     ) -> Option<T> {
         let began = self.robot.port().now();
         let result = doing(&mut self.robot);

@@ -10,7 +10,7 @@ use host_link::robot::{Callbacks, Halt, Silence};
 use host_link::session::SessionConfig;
 use host_link::testing::{FaultPlan, Faults, Outage};
 use host_link::{LinkError, Port, Robot};
-use tank_less::{Line, circle, connect, faulty, upload};
+use tank_less::{FaultyLine, circle, connect, faulty, upload};
 
 const MS: Duration = Duration::from_millis(1);
 const FOR_EVER: Duration = Duration::from_hours(1);
@@ -28,7 +28,7 @@ fn reporting() -> (Reports, Callbacks) {
     (reports, callbacks)
 }
 
-fn robot() -> (Robot<Line>, Reports) {
+fn robot() -> (Robot<FaultyLine>, Reports) {
     let mut robot = connect("", 12);
     let (reports, callbacks) = reporting();
     robot.call_back(callbacks);
@@ -52,12 +52,15 @@ fn began(reports: &Reports, doing: &str) {
     assert_eq!(reports.iter().filter(begins).count(), 1, "{reports:?}");
 }
 
-fn cut(robot: &mut Robot<Line>, after: Duration, lasting: Duration) {
+fn cut(robot: &mut Robot<FaultyLine>, after: Duration, lasting: Duration) {
     let from = robot.port().now() + after;
     robot.port_mut().disconnect(Outage::once(from, lasting));
 }
 
-type Call = (&'static str, fn(&mut Robot<Line>) -> Result<(), LinkError>);
+type Call = (
+    &'static str,
+    fn(&mut Robot<FaultyLine>) -> Result<(), LinkError>,
+);
 
 /// Every kind of call against a silent robot is reported after two seconds and ends in the stated time.
 #[test]

@@ -13,7 +13,7 @@ use haste::fill;
 use host_link::testing::{FaultPlan, Faults};
 use host_link::{Port, Robot as HostRobot, StoppedBy};
 use link_protocol::{StateName, StopCause};
-use tank_less::{Line, circle, faulty};
+use tank_less::{FaultyLine, circle, faulty};
 
 const MS: Duration = Duration::from_millis(1);
 const RATES: [u32; 6] = [200, 500, 1_000, 2_000, 5_000, 11_000];
@@ -24,7 +24,7 @@ const TO_RAMP: Duration = Duration::from_millis(1_480);
 const TO_OFF: Duration = Duration::from_secs(2);
 
 /// Returns a host whose robot plays endlessly, before the line degrades.
-fn playing(seed: u64) -> HostRobot<Line> {
+fn playing(seed: u64) -> HostRobot<FaultyLine> {
     let mut robot = HostRobot::connect(faulty(Faults::none(), seed), seed).unwrap();
     let table = GaitTable::from_fn(64, |u| {
         let (sin, cos) = (std::f64::consts::TAU * u).sin_cos();
@@ -39,15 +39,15 @@ fn playing(seed: u64) -> HostRobot<Line> {
     robot
 }
 
-fn state(robot: &HostRobot<Line>) -> StateName {
+fn state(robot: &HostRobot<FaultyLine>) -> StateName {
     robot.port().inner().device().output.unwrap().state
 }
 
-fn listen(robot: &mut HostRobot<Line>, time: Duration) {
+fn listen(robot: &mut HostRobot<FaultyLine>, time: Duration) {
     robot.listen(time, |_| ControlFlow::Continue(())).unwrap();
 }
 
-fn worsen(robot: &mut HostRobot<Line>, rate: u32, buffer: usize) {
+fn worsen(robot: &mut HostRobot<FaultyLine>, rate: u32, buffer: usize) {
     let slow = Faults {
         rate: Some(rate),
         buffer,
@@ -57,7 +57,7 @@ fn worsen(robot: &mut HostRobot<Line>, rate: u32, buffer: usize) {
 }
 
 /// Time to the ramp, and from the last fresh keep-alive to pulses off, without a host.
-fn left_alone(robot: HostRobot<Line>, from: Duration) -> (Duration, Duration) {
+fn left_alone(robot: HostRobot<FaultyLine>, from: Duration) -> (Duration, Duration) {
     let mut port = robot.into_port();
     let mut bytes = [0; 512];
     let end = port.now() + Duration::from_mins(1);

@@ -147,10 +147,10 @@ pub(crate) fn circle(amplitude: f64) -> GaitTable {
     .unwrap()
 }
 
-pub(crate) type Line = FaultyPort<VirtualPort<Robot>>;
+pub(crate) type FaultyLine = FaultyPort<VirtualPort<Robot>>;
 
 /// Connects over any line: after five lost greetings an operator would try again.
-pub(crate) fn connect(faults: &str, seed: u64) -> HostRobot<Line> {
+pub(crate) fn connect(faults: &str, seed: u64) -> HostRobot<FaultyLine> {
     for attempt in 0..6 {
         let line = faulty(faults.parse().unwrap(), seed + 1000 * attempt);
         match HostRobot::connect(line, seed) {
@@ -162,7 +162,10 @@ pub(crate) fn connect(faults: &str, seed: u64) -> HostRobot<Line> {
     panic!("seed {seed}: six greetings of five tries each in vain");
 }
 
-pub(crate) fn upload(robot: &mut HostRobot<Line>, table: &[u8]) -> Result<TableInfo, LinkError> {
+pub(crate) fn upload(
+    robot: &mut HostRobot<FaultyLine>,
+    table: &[u8],
+) -> Result<TableInfo, LinkError> {
     robot.upload(table, Duration::from_mins(1), |_| ControlFlow::Continue(()))
 }
 

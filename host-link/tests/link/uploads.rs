@@ -9,7 +9,7 @@ use host_link::session::{LinkCounters, UploadPhase};
 use host_link::testing::Outage;
 use host_link::{LinkError, Port, Robot};
 use link_protocol::crc32c;
-use tank_less::{Line, circle, connect, upload};
+use tank_less::{FaultyLine, circle, connect, upload};
 
 const MS: Duration = Duration::from_millis(1);
 const MINUTE: Duration = Duration::from_mins(1);
@@ -78,8 +78,8 @@ fn uploads_arrive_right_and_act_once_whatever_the_line_does() {
 
 /// Repeats a request after five failed attempts, as an operator would; returns the number of repeats.
 fn settled<T>(
-    robot: &mut Robot<Line>,
-    mut ask: impl FnMut(&mut Robot<Line>) -> Result<T, LinkError>,
+    robot: &mut Robot<FaultyLine>,
+    mut ask: impl FnMut(&mut Robot<FaultyLine>) -> Result<T, LinkError>,
 ) -> (T, u32) {
     for in_vain in 0..6 {
         match ask(robot) {
