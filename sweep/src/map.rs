@@ -94,9 +94,9 @@ pub struct Map {
     pub designs_without_gait: u64,
 }
 
-type Told = (&'static str, &'static str, fn(&Row) -> Option<f64>);
+type MapQuantity = (&'static str, &'static str, fn(&Row) -> Option<f64>);
 
-const QUANTITIES: [Told; 7] = [
+const QUANTITIES: [MapQuantity; 7] = [
     ("displacement_over_length", "", |row| {
         row.displacement_over_length
     }),
