@@ -175,16 +175,16 @@ impl From<DisplacementError> for Missing {
 }
 
 /// Result of a design.
-pub(crate) type Answer = Result<Solved, Missing>;
+pub(crate) type DesignOutcome = Result<Solved, Missing>;
 
 /// Solver of the designs of a plan.
 pub(crate) trait Solve {
     /// Solves a design by the search of the objective.
-    fn cold(&self, design: &Design, key: u64) -> Answer;
+    fn cold(&self, design: &Design, key: u64) -> DesignOutcome;
     /// Solves a design from its neighbour's solution. Returns `None` if that leads to no certified gait.
     fn warm(&self, design: &Design, key: u64, near: &Solved) -> Option<Solved>;
     /// Derives the result from that of a design with other servo rates. Returns `None` if the rates affect the best gait.
-    fn timed_anew(&self, design: &Design, key: u64, same: &Answer) -> Option<Answer>;
+    fn timed_anew(&self, design: &Design, key: u64, same: &DesignOutcome) -> Option<DesignOutcome>;
 }
 
 /// Solver with the options of a spec.
@@ -257,7 +257,7 @@ impl Solver {
 }
 
 impl Solve for Solver {
-    fn cold(&self, design: &Design, key: u64) -> Answer {
+    fn cold(&self, design: &Design, key: u64) -> DesignOutcome {
         let of_gait =
             |gait: OptimalGait| Self::solved(design, key, false, Held::Gait(Box::new(gait)));
         match design.aim {
@@ -309,7 +309,7 @@ impl Solve for Solver {
         Some(Self::solved(design, key, true, held))
     }
 
-    fn timed_anew(&self, design: &Design, key: u64, same: &Answer) -> Option<Answer> {
+    fn timed_anew(&self, design: &Design, key: u64, same: &DesignOutcome) -> Option<DesignOutcome> {
         if design.aim == Aim::Speed {
             return None;
         }

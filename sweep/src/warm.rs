@@ -12,7 +12,7 @@ mod again;
 
 use std::collections::BTreeMap;
 
-use crate::objective::{Answer, Solve, Solved, Solver};
+use crate::objective::{DesignOutcome, Solve, Solved, Solver};
 use crate::row::Row;
 use crate::{Aim, Axis, Design, Field, Plan};
 
@@ -122,7 +122,7 @@ struct Visit<'a> {
     seconds: &'a dyn Fn() -> f64,
     /// `true` if neighbours are compared at the end, for which their gaits are kept.
     compares: bool,
-    answers: BTreeMap<u64, Answer>,
+    answers: BTreeMap<u64, DesignOutcome>,
     cost: Cost,
 }
 
@@ -146,7 +146,7 @@ impl Visit<'_> {
     }
 
     /// Solves all tasks between the first and the last of these keys, whose results are known.
-    fn between(&mut self, keys: &[u64], first: &Answer, last: &Answer) {
+    fn between(&mut self, keys: &[u64], first: &DesignOutcome, last: &DesignOutcome) {
         let Some(middle) = (keys.len() > 2).then_some(keys.len() / 2) else {
             return;
         };
@@ -178,7 +178,7 @@ impl Visit<'_> {
     }
 
     /// Result of a task that differs only in the servo rates, if it is known already.
-    fn twin(&self, key: u64, just_found: &[Solved]) -> Option<Answer> {
+    fn twin(&self, key: u64, just_found: &[Solved]) -> Option<DesignOutcome> {
         if !self.compares {
             return None;
         }
@@ -199,7 +199,7 @@ impl Visit<'_> {
         })
     }
 
-    fn cold(&mut self, key: u64) -> Answer {
+    fn cold(&mut self, key: u64) -> DesignOutcome {
         if let Some(answer) = self.twin(key, &[]) {
             return answer;
         }
@@ -218,7 +218,7 @@ impl Visit<'_> {
         found
     }
 
-    fn keep(&mut self, key: u64, answer: Answer) {
+    fn keep(&mut self, key: u64, answer: DesignOutcome) {
         let answer = match answer {
             Ok(solved) if !self.compares => Ok(Solved::of_row(solved.row)),
             answer => answer,
@@ -272,7 +272,7 @@ mod tests {
     }
 
     impl Solve for Two {
-        fn cold(&self, _: &crate::field::Design, key: u64) -> Answer {
+        fn cold(&self, _: &crate::field::Design, key: u64) -> DesignOutcome {
             let best = self.of(key, "two").or_else(|| self.of(key, "one"));
             best.ok_or_else(|| "none".to_owned().into())
         }
@@ -283,7 +283,12 @@ mod tests {
             Some(solved)
         }
 
-        fn timed_anew(&self, _: &crate::field::Design, _: u64, _: &Answer) -> Option<Answer> {
+        fn timed_anew(
+            &self,
+            _: &crate::field::Design,
+            _: u64,
+            _: &DesignOutcome,
+        ) -> Option<DesignOutcome> {
             None
         }
     }
