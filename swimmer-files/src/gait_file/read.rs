@@ -13,13 +13,13 @@ const COLUMNS: &str = "u,phi1,phi2";
 
 /// One line of the file with its place.
 #[derive(Clone, Copy)]
-struct Line<'a> {
+struct GaitLine<'a> {
     path: &'a Path,
     number: usize,
     text: &'a str,
 }
 
-impl Line<'_> {
+impl GaitLine<'_> {
     /// An error at a part of this line (a slice of it), or at its start.
     fn error(&self, part: &str, problem: impl Into<String>) -> FileError {
         let offset = (part.as_ptr() as usize).wrapping_sub(self.text.as_ptr() as usize);
@@ -70,7 +70,7 @@ impl Line<'_> {
 }
 
 pub(super) fn gait_file(text: &str, path: &Path) -> Result<GaitFile, FileError> {
-    let mut lines = text.lines().enumerate().map(|(index, text)| Line {
+    let mut lines = text.lines().enumerate().map(|(index, text)| GaitLine {
         path,
         number: index + 1,
         text,
@@ -117,7 +117,7 @@ pub(super) fn gait_file(text: &str, path: &Path) -> Result<GaitFile, FileError> 
     Ok(file)
 }
 
-fn check_version(path: &Path, first: Option<Line<'_>>) -> Result<(), FileError> {
+fn check_version(path: &Path, first: Option<GaitLine<'_>>) -> Result<(), FileError> {
     let not_a_gait = || {
         FileError::at(
             path,
@@ -146,7 +146,7 @@ fn check_version(path: &Path, first: Option<Line<'_>>) -> Result<(), FileError> 
 }
 
 /// Takes one header line; a corner is handed back so that it can be checked against the samples.
-fn header_line(file: &mut GaitFile, line: Line<'_>) -> Result<Option<f64>, FileError> {
+fn header_line(file: &mut GaitFile, line: GaitLine<'_>) -> Result<Option<f64>, FileError> {
     if line.text.trim().is_empty() || line.text.starts_with("##") {
         return Ok(None);
     }
@@ -186,7 +186,7 @@ fn header_line(file: &mut GaitFile, line: Line<'_>) -> Result<Option<f64>, FileE
     Ok(None)
 }
 
-fn optimal_period(line: Line<'_>, value: &str) -> Result<Option<f64>, FileError> {
+fn optimal_period(line: GaitLine<'_>, value: &str) -> Result<Option<f64>, FileError> {
     if value.trim() == "none" {
         return Ok(None);
     }
@@ -198,7 +198,7 @@ fn optimal_period(line: Line<'_>, value: &str) -> Result<Option<f64>, FileError>
     }
 }
 
-fn bounds(line: Line<'_>, value: &str) -> Result<Bounds, FileError> {
+fn bounds(line: GaitLine<'_>, value: &str) -> Result<Bounds, FileError> {
     let mut bounds = Bounds::default();
     for item in value.split_whitespace() {
         let (key, value) = item
@@ -235,7 +235,7 @@ fn bounds(line: Line<'_>, value: &str) -> Result<Bounds, FileError> {
     Ok(bounds)
 }
 
-fn arc(line: Line<'_>, value: &str) -> Result<GaitArc, FileError> {
+fn arc(line: GaitLine<'_>, value: &str) -> Result<GaitArc, FileError> {
     let mut parts = value.split_whitespace();
     let (Some(kind), Some(from), Some(to), None) =
         (parts.next(), parts.next(), parts.next(), parts.next())
@@ -259,7 +259,7 @@ fn arc(line: Line<'_>, value: &str) -> Result<GaitArc, FileError> {
     Ok(arc)
 }
 
-fn sample_line(file: &mut GaitFile, line: Line<'_>) -> Result<(), FileError> {
+fn sample_line(file: &mut GaitFile, line: GaitLine<'_>) -> Result<(), FileError> {
     let mut parts = line.text.split(',');
     let (Some(u), Some(phi1), Some(phi2), None) =
         (parts.next(), parts.next(), parts.next(), parts.next())
@@ -290,7 +290,7 @@ fn sample_line(file: &mut GaitFile, line: Line<'_>) -> Result<(), FileError> {
     Ok(())
 }
 
-fn check_closure(file: &GaitFile, last_line: Line<'_>) -> Result<(), FileError> {
+fn check_closure(file: &GaitFile, last_line: GaitLine<'_>) -> Result<(), FileError> {
     let (Some(&u), Some(first), Some(last)) = (file.u.last(), file.phi.first(), file.phi.last())
     else {
         return Ok(());
