@@ -59,7 +59,7 @@ impl LinkFrame {
     }
 
     pub(super) fn from_json(direction: Direction, data: &[u8]) -> Result<Self, String> {
-        let told: Told =
+        let told: StoredFrame =
             serde_json::from_slice(data).map_err(|error| format!("no frame: {error}"))?;
         Ok(Self {
             direction,
@@ -72,7 +72,7 @@ impl LinkFrame {
 
 /// The part of a frame's JSON that is read back; the rest is for people.
 #[derive(Deserialize)]
-struct Told<'a> {
+struct StoredFrame<'a> {
     host_time_ns: u64,
     robot_time_us: Option<u64>,
     #[serde(borrow)]
