@@ -24,7 +24,7 @@ const ROUNDING: Duration = Duration::from_nanos(10);
 
 /// Connection between the board and a computer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Line {
+pub enum BoardLine {
     /// The UART to the HC-05.
     #[default]
     Uart,
@@ -226,7 +226,7 @@ impl Board {
     }
 
     /// Takes at most `room` bytes that the board has sent over a line until `now`.
-    pub fn take_sent(&mut self, line: Line, now: Duration, room: usize, out: &mut Vec<u8>) {
+    pub fn take_sent(&mut self, line: BoardLine, now: Duration, room: usize, out: &mut Vec<u8>) {
         let queue = &mut self.sent[line as usize];
         let sent = queue.iter().take_while(|(at, _)| *at <= now).count();
         out.extend(queue.drain(..sent.min(room)).map(|(_, byte)| byte));
@@ -234,8 +234,8 @@ impl Board {
 
     fn take_in(&mut self, answer: Answer) {
         for (queue, times, bytes) in [
-            (Line::Uart, answer.uart_at, answer.uart),
-            (Line::Usb, answer.usb_at, answer.usb),
+            (BoardLine::Uart, answer.uart_at, answer.uart),
+            (BoardLine::Usb, answer.usb_at, answer.usb),
         ] {
             self.sent[queue as usize].extend(times.into_iter().map(nanos).zip(bytes));
         }

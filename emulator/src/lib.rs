@@ -34,7 +34,7 @@ mod events;
 mod log;
 mod robot;
 
-pub use board::{Board, BoardConfig, BoardKind, EmulatorError, Line};
+pub use board::{Board, BoardConfig, BoardKind, BoardLine, EmulatorError};
 pub use commission::commission;
 pub use events::{Edge, Events, Led, Loader, PatchReached, Period, PowerCut, Reset, Servo, Stack};
 pub use log::{LogLevel, LogLine};

@@ -8,13 +8,13 @@ use std::time::Duration;
 use host_link::port::{Device, WireSpeed};
 use twin::{VirtualRobot, World};
 
-use crate::{Board, EmulatorError, Events, Line, LogLine, Period};
+use crate::{Board, BoardLine, EmulatorError, Events, LogLine, Period};
 
 /// Virtual robot that runs the firmware image.
 #[derive(Debug)]
 pub struct EmulatedRobot {
     board: Board,
-    line: Line,
+    line: BoardLine,
     world: World,
     /// Time up to which the tank has advanced; the board may be ahead, within `quiet`.
     now: Duration,
@@ -54,7 +54,7 @@ impl EmulatedRobot {
         board.set_connected(true)?;
         Ok(Self {
             board,
-            line: Line::Uart,
+            line: BoardLine::Uart,
             world,
             now: Duration::ZERO,
             quiet: Quiet::default(),
@@ -73,7 +73,7 @@ impl EmulatedRobot {
     /// # Errors
     /// [`EmulatorError`] if the board does not reply.
     pub fn over_usb(mut self) -> Result<Self, EmulatorError> {
-        self.line = Line::Usb;
+        self.line = BoardLine::Usb;
         self.board.set_connected(false)?;
         self.board.set_plugged(true)?;
         Ok(self)
@@ -156,13 +156,13 @@ impl Device for EmulatedRobot {
 
     fn receive(&mut self, bytes: &[u8]) {
         match self.line {
-            Line::Uart => {
+            BoardLine::Uart => {
                 let count = u32::try_from(bytes.len()).unwrap_or(u32::MAX);
                 self.heard =
                     self.heard.max(self.board.now()) + WireSpeed::robot().byte_time() * count;
                 self.attempt(|robot| robot.board.feed(bytes));
             }
-            Line::Usb => {
+            BoardLine::Usb => {
                 self.heard = self.board.now();
                 self.attempt(|robot| robot.board.feed_usb(bytes));
             }

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use emulator::{Board, Line};
+use emulator::{Board, BoardLine};
 use gait_player::Limits;
 use link_protocol::{DecodeCounters, Decoder, Message, Reply, Request, StateName, Status};
 use rand::SeedableRng;
@@ -192,7 +192,7 @@ impl Storm {
         let mut bytes = Vec::new();
         let now = self.board.now();
         self.board
-            .take_sent(Line::Uart, now, usize::MAX, &mut bytes);
+            .take_sent(BoardLine::Uart, now, usize::MAX, &mut bytes);
         for byte in bytes {
             if let Some(received) = self.decoder.push(byte) {
                 let header = received.header;

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use emulator::{EmulatedRobot, Line, Period};
+use emulator::{BoardLine, EmulatedRobot, Period};
 use host_link::port::{VirtualPort, WireSpeed};
 use host_link::{Port as _, Robot};
 use link_protocol::{
@@ -69,7 +69,7 @@ fn a_bare_board_on_a_cable_is_a_robot() {
         assert!(!rig::events(&mut robot).periods.last().unwrap().powered());
         let mut bytes = Vec::new();
         let board = rig::board_of(&mut robot);
-        board.take_sent(Line::Uart, board.now(), usize::MAX, &mut bytes);
+        board.take_sent(BoardLine::Uart, board.now(), usize::MAX, &mut bytes);
         assert!(bytes.is_empty(), "bytes to a radio that is not there");
         seen(
             &format!("USB, {image:?}, nothing but the cable (STATE open)"),
@@ -155,7 +155,7 @@ fn over_usb(robot: &mut Robot<Port>, message: &Message) {
 fn heard_over_usb(robot: &mut Robot<Port>) -> Vec<Message> {
     let mut bytes = Vec::new();
     let board = rig::board_of(robot);
-    board.take_sent(Line::Usb, board.now(), usize::MAX, &mut bytes);
+    board.take_sent(BoardLine::Usb, board.now(), usize::MAX, &mut bytes);
     let mut decoder = Decoder::new();
     bytes
         .into_iter()
