@@ -13,7 +13,7 @@ use std::time::Duration;
 use host_link::testing::Character;
 use serde_json::{Value, json};
 
-use crate::events::{Answer, Events, Stack, nanos};
+use crate::events::{EmulatorReply, Events, Stack, nanos};
 use crate::log::Log;
 
 pub use config::{BoardConfig, BoardKind};
@@ -232,7 +232,7 @@ impl Board {
         out.extend(queue.drain(..sent.min(room)).map(|(_, byte)| byte));
     }
 
-    fn take_in(&mut self, answer: Answer) {
+    fn take_in(&mut self, answer: EmulatorReply) {
         for (queue, times, bytes) in [
             (BoardLine::Uart, answer.uart_at, answer.uart),
             (BoardLine::Usb, answer.usb_at, answer.usb),
@@ -252,7 +252,7 @@ impl Board {
         Ok(())
     }
 
-    fn ask(&mut self, command: &Value) -> Result<Answer, EmulatorError> {
+    fn ask(&mut self, command: &Value) -> Result<EmulatorReply, EmulatorError> {
         let name = || command["do"].as_str().unwrap_or("?").to_owned();
         let gone = |why: String| EmulatorError::Gone {
             command: name(),
@@ -277,7 +277,7 @@ impl Board {
                 why: why.to_owned(),
             });
         }
-        let answer: Answer =
+        let answer: EmulatorReply =
             serde_json::from_value(answer).map_err(|error| gone(error.to_string()))?;
         self.powered = answer.powered;
         self.now = self.now.max(nanos(answer.now));

@@ -245,7 +245,7 @@ impl Stack {
 
 /// Reply of the emulator process to a command.
 #[derive(Debug, Deserialize)]
-pub(crate) struct Answer {
+pub(crate) struct EmulatorReply {
     pub(crate) now: f64,
     pub(crate) powered: bool,
     pub(crate) uart: Vec<u8>,
