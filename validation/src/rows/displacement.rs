@@ -137,7 +137,7 @@ fn distance(point: &Vector2<f64>, a: &Vector2<f64>, b: &Vector2<f64>) -> f64 {
 /// Returns `true` if a curve connects φ₁ = φ₂ > 0 to φ₁ = −φ₂, φ₂ > 0 without crossing another symmetry line in between.
 fn joins_both_lines(points: &[Vector2<f64>]) -> bool {
     #[derive(PartialEq)]
-    enum Line {
+    enum SymmetryLine {
         Start,
         End,
         Other,
@@ -146,22 +146,22 @@ fn joins_both_lines(points: &[Vector2<f64>]) -> bool {
         let across = |value: fn(&Vector2<f64>) -> f64| (value(a) < 0.0) != (value(b) < 0.0);
         if across(|p| p.x - p.y) {
             Some(if a.x + a.y > 0.0 {
-                Line::Start
+                SymmetryLine::Start
             } else {
-                Line::Other
+                SymmetryLine::Other
             })
         } else if across(|p| p.x + p.y) {
             Some(if a.y - a.x > 0.0 {
-                Line::End
+                SymmetryLine::End
             } else {
-                Line::Other
+                SymmetryLine::Other
             })
         } else {
             None
         }
     });
     // Twice around, since a closed curve may begin anywhere.
-    let crossed: Vec<Line> = crossed.collect();
+    let crossed: Vec<SymmetryLine> = crossed.collect();
     let closed = points.first() == points.last();
     let next = crossed.iter().cycle().skip(1);
     crossed
@@ -172,7 +172,12 @@ fn joins_both_lines(points: &[Vector2<f64>]) -> bool {
         } else {
             crossed.len().saturating_sub(1)
         })
-        .any(|pair| matches!(pair, (Line::Start, Line::End) | (Line::End, Line::Start)))
+        .any(|pair| {
+            matches!(
+                pair,
+                (SymmetryLine::Start, SymmetryLine::End) | (SymmetryLine::End, SymmetryLine::Start)
+            )
+        })
 }
 
 #[cfg(test)]
