@@ -27,7 +27,7 @@ pub(crate) struct Paper {
 }
 
 #[derive(Debug, Serialize)]
-struct Answer {
+struct PaperOutput {
     rows: Vec<Row>,
     /// The page that was written.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -68,7 +68,7 @@ impl Paper {
         let failure = (!differ.is_empty())
             .then(|| Failure::Answered(format!("differ from the paper: {}", differ.join(", "))));
         drop(progress);
-        output.answer(&Answer {
+        output.answer(&PaperOutput {
             rows,
             page: written,
         });
@@ -76,7 +76,7 @@ impl Paper {
     }
 }
 
-impl fmt::Display for Answer {
+impl fmt::Display for PaperOutput {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut table = Table::new(["quantity", "paper", "ours", "deviation", ""]);
         for row in &self.rows {
