@@ -25,7 +25,7 @@ pub(crate) struct PlanSpec {
 }
 
 #[derive(Debug, Serialize)]
-struct Answer {
+struct PlanOutput {
     plan: String,
     folder: PathBuf,
     objective: String,
@@ -53,12 +53,12 @@ impl PlanSpec {
         })?;
         let plan = Plan::of_spec(&text, &self.spec)?;
         plan.save(&self.output)?;
-        output.answer(&Answer::new(&plan, &self.output));
+        output.answer(&PlanOutput::new(&plan, &self.output));
         Ok(())
     }
 }
 
-impl Answer {
+impl PlanOutput {
     fn new(plan: &Plan, folder: &Path) -> Self {
         Self {
             plan: plan.hash(),
@@ -89,7 +89,7 @@ impl Answer {
     }
 }
 
-impl fmt::Display for Answer {
+impl fmt::Display for PlanOutput {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut rows = Rows::default();
         rows.row("plan", self.plan.get(..16).unwrap_or_default())
