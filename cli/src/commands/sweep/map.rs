@@ -66,7 +66,7 @@ pub(super) enum Drawn {
 }
 
 #[derive(Debug, Serialize)]
-struct Answer {
+struct MapOutput {
     plan: String,
     tasks: u64,
     done: u64,
@@ -107,7 +107,7 @@ impl Map {
         if let Some(path) = &self.export {
             write_atomically(path, document(&found).as_bytes())?;
         }
-        output.answer(&Answer::new(
+        output.answer(&MapOutput::new(
             &plan,
             &found,
             doubts,
@@ -154,7 +154,7 @@ impl Map {
     }
 }
 
-impl Answer {
+impl MapOutput {
     fn new(
         plan: &Plan,
         found: &Found,
@@ -193,7 +193,7 @@ impl Answer {
 /// Largest number of doubts that are listed singly.
 const TOLD: usize = 12;
 
-impl fmt::Display for Answer {
+impl fmt::Display for MapOutput {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let count = |kind| {
             self.doubts
