@@ -50,7 +50,7 @@ pub(crate) struct SlurmJob {
 }
 
 #[derive(Debug, Serialize)]
-struct Answer {
+struct SubmitOutput {
     tasks: u64,
     done: u64,
     failed: u64,
@@ -119,7 +119,7 @@ impl SlurmJob {
         } else {
             None
         };
-        output.answer(&Answer {
+        output.answer(&SubmitOutput {
             tasks: status.tasks,
             done: status.done,
             failed: status.failed,
@@ -156,7 +156,7 @@ fn submitted(script: &PathBuf) -> Outcome<String> {
     Ok(said.trim().split(';').next().unwrap_or_default().to_owned())
 }
 
-impl fmt::Display for Answer {
+impl fmt::Display for SubmitOutput {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut rows = Rows::default();
         rows.row("script", shown(&self.script))
