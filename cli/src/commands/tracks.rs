@@ -21,14 +21,14 @@ pub(crate) struct Tracks {
 }
 
 #[derive(Debug, Serialize)]
-struct Answer {
+struct TracksOutput {
     #[serde(skip)]
     file: String,
     #[serde(flatten)]
     survey: TrackSurvey,
 }
 
-impl fmt::Display for Answer {
+impl fmt::Display for TracksOutput {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let survey = &self.survey;
         let rate = if survey.rate_hz > 0.0 {
@@ -63,7 +63,7 @@ impl Tracks {
     /// Reads the file and answers.
     pub(crate) fn run(self, output: Output) -> Outcome {
         let survey = survey_file(&self.file, &self.recording.options())?;
-        output.answer(&Answer {
+        output.answer(&TracksOutput {
             file: self.file.display().to_string(),
             survey,
         });
