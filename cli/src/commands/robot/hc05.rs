@@ -49,7 +49,7 @@ pub(super) fn run(access: &Access, arguments: &Hc05, output: Output) -> Outcome 
     let mut port =
         SerialPort::open(path, arguments.at_baud).map_err(|error| Failure::tried(&error))?;
     let outcome = hc05::converse(&mut port, &wanted, arguments.check)?;
-    let answer = Answer::new(&outcome, arguments.check);
+    let answer = Hc05Output::new(&outcome, arguments.check);
     if arguments.check && !answer.differed.is_empty() {
         let reason = format!(
             "the HC-05 is not as wanted: {}; set it up with the same command without --check",
@@ -63,7 +63,7 @@ pub(super) fn run(access: &Access, arguments: &Hc05, output: Output) -> Outcome 
 
 /// Settings found and changed.
 #[derive(Debug, Serialize)]
-struct Answer {
+struct Hc05Output {
     version: Option<String>,
     before: Settings,
     after: Settings,
@@ -103,7 +103,7 @@ fn parity(uart: Uart) -> &'static str {
     }
 }
 
-impl Answer {
+impl Hc05Output {
     fn new(outcome: &hc05::Outcome, checked_only: bool) -> Self {
         Self {
             version: outcome.before.version.clone(),
@@ -119,7 +119,7 @@ impl Answer {
     }
 }
 
-impl fmt::Display for Answer {
+impl fmt::Display for Hc05Output {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let told = |value: &Option<String>| value.clone().unwrap_or_else(|| "not told".to_owned());
         let speed = |settings: &Settings| match (settings.baud, settings.stop_bits, settings.parity)
