@@ -15,12 +15,12 @@ struct Fit {
     chi: f64,
     intervals: Intervals,
     correlation: Option<f64>,
-    further: Option<Further>,
+    further: Option<FittedParameters>,
 }
 
 /// Nuisance parameters of the fit.
 #[derive(Debug, Deserialize)]
-struct Further {
+struct FittedParameters {
     parameters: Vec<Parameter>,
     level: f64,
     correlations: Vec<Vec<f64>>,
@@ -33,7 +33,7 @@ struct Parameter {
     interval: [f64; 2],
 }
 
-impl Further {
+impl FittedParameters {
     /// The uncertainty of the fit, if it includes the servos' gain. The estimate of the gain belongs into the servo map; its
     /// uncertainty remains.
     fn uncertainty(&self) -> Option<Uncertainty> {
@@ -83,7 +83,7 @@ pub(crate) fn load_fit(path: &Path) -> Outcome<Uncertainty> {
             error.column()
         ))
     })?;
-    let further = fit.further.as_ref().and_then(Further::uncertainty);
+    let further = fit.further.as_ref().and_then(FittedParameters::uncertainty);
     let uncertainty = further.unwrap_or(Uncertainty {
         sphere_radius_interval: fit.intervals.sphere_radius_m,
         chi_interval: fit.intervals.chi,
