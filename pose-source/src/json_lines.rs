@@ -55,7 +55,7 @@ pub struct JsonLines {
 }
 
 #[derive(Debug, Default, Deserialize, Serialize)]
-struct Line {
+struct JsonFrame {
     t: f64,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     points: BTreeMap<String, Option<Vec<f64>>>,
@@ -154,7 +154,7 @@ impl JsonLines {
         if !line.trim_ascii_start().starts_with(b"{") {
             return Err("not a JSON object; write {\"t\": …, \"points\": …}".to_owned());
         }
-        let line: Line = serde_json::from_slice(line).map_err(|error| error.to_string())?;
+        let line: JsonFrame = serde_json::from_slice(line).map_err(|error| error.to_string())?;
         if !line.t.is_finite() {
             return Err("`t` is not finite".to_owned());
         }
@@ -246,10 +246,10 @@ fn marker(name: Option<String>, [x_m, y_m, z_m]: [f64; 3]) -> Marker {
 
 /// The line of a frame, without its line feed, as [`JsonLines`] reads it with [`Mapping::Z_UP`]. Bodies without a name are left out.
 pub(crate) fn line_of(frame: &Frame) -> String {
-    let mut line = Line {
+    let mut line = JsonFrame {
         t: frame.stamp_s,
         latency_ms: frame.latency_s.map(|latency| latency * 1e3),
-        ..Line::default()
+        ..JsonFrame::default()
     };
     for marker in &frame.markers {
         let position = marker.position().to_vec();
