@@ -170,8 +170,8 @@ fn copy(from: &Path, to: &Path) {
 fn filtered(text: &str, folder: &Path) -> String {
     let text = text.replace(folder.to_str().unwrap(), "[folder]");
     let filter = |line: &str| {
-        let Line { before, value } = Line::of(line);
-        match Line::of(line).key() {
+        let JsonLine { before, value } = JsonLine::of(line);
+        match JsonLine::of(line).key() {
             Some(key) if FILTERED.contains(&key) && !value.starts_with(['{', '[']) => {
                 let comma = if line.ends_with(',') { "," } else { "" };
                 format!("{before}\"[{key}]\"{comma}\n")
@@ -206,7 +206,7 @@ fn difference(kept: &str, printed: &str) -> Option<String> {
 
 /// Compares two lines of indented JSON.
 fn agree(kept: &str, printed: &str) -> bool {
-    let (kept, printed) = (Line::of(kept), Line::of(printed));
+    let (kept, printed) = (JsonLine::of(kept), JsonLine::of(printed));
     let is_rough = kept.key().is_some_and(|key| ROUGH.contains(&key));
     let absolute = if is_rough {
         ABSOLUTE_IF_ROUGH
@@ -221,14 +221,14 @@ fn agree(kept: &str, printed: &str) -> bool {
 }
 
 /// A line of indented JSON, which holds at most one value.
-struct Line<'a> {
+struct JsonLine<'a> {
     /// Indentation and key.
     before: &'a str,
     /// Value without the comma behind it.
     value: &'a str,
 }
 
-impl<'a> Line<'a> {
+impl<'a> JsonLine<'a> {
     fn of(line: &'a str) -> Self {
         let start = line
             .find("\": ")
