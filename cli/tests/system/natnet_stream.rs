@@ -104,7 +104,7 @@ fn python() -> PathBuf {
 }
 
 /// Points by name, by stamp in hundredths of a second, in the tank's axes.
-type Seen = BTreeMap<u64, BTreeMap<String, [f64; 3]>>;
+type PointsByStamp = BTreeMap<u64, BTreeMap<String, [f64; 3]>>;
 
 fn hundredths(seconds: f64) -> u64 {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
@@ -113,9 +113,9 @@ fn hundredths(seconds: f64) -> u64 {
 }
 
 /// The recording, through `calibrate`'s reader, whose axes are Motive's.
-fn recorded(path: &Path) -> Seen {
+fn recorded(path: &Path) -> PointsByStamp {
     let file = calibrate::read_tracks(&fs::read(path).unwrap(), path).unwrap();
-    let mut seen = Seen::new();
+    let mut seen = PointsByStamp::new();
     for (row, time) in file.times.iter().enumerate() {
         let points = seen.entry(hundredths(*time)).or_default();
         for point in &file.points {
@@ -216,7 +216,7 @@ fn an_independent_reader_and_ours_decode_what_the_twin_recorded() {
 }
 
 /// Definitions and frames of the independent reader.
-fn check_independent(read: &Value, truth: &Seen) {
+fn check_independent(read: &Value, truth: &PointsByStamp) {
     assert_eq!(
         (&read["application"], &read["version"]),
         (&"swimmer twin".into(), &"4.1.0.0".into())
@@ -284,7 +284,7 @@ fn check_independent(read: &Value, truth: &Seen) {
 }
 
 /// The recording of our own reader.
-fn check_ours(file: &Path, truth: &Seen) {
+fn check_ours(file: &Path, truth: &PointsByStamp) {
     let live = calibrate::read_tracks(&fs::read(file).unwrap(), file).unwrap();
     assert!(live.frames() > 500);
     // Frames that arrive before the definition of the models have points without names.
