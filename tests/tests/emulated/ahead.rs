@@ -31,9 +31,9 @@ impl Device for StepByStep {
 }
 
 /// Telemetry of a session with its times, and the end of the session.
-type Seen = (Vec<(Telemetry, Duration)>, Duration);
+type SessionRecord = (Vec<(Telemetry, Duration)>, Duration);
 
-fn session<P: Port>(port: P) -> (Seen, P) {
+fn session<P: Port>(port: P) -> (SessionRecord, P) {
     let mut robot = Robot::connect(port, 1).unwrap();
     let seen = Arc::new(Mutex::new(Vec::new()));
     let sink = Arc::clone(&seen);
