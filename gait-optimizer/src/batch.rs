@@ -57,7 +57,7 @@ const AT_ONCE: usize = GROUPS * WIDTH;
 /// φ₁ and φ₂ of all shapes of each group.
 type Shapes = [[[f64; WIDTH]; 2]; GROUPS];
 /// Entries of each block at all shapes of each group.
-type Found<const B: usize> = [[[[f64; WIDTH]; ENTRIES]; B]; GROUPS];
+type BlockEntries<const B: usize> = [[[[f64; WIDTH]; ENTRIES]; B]; GROUPS];
 
 impl Batch {
     /// Creates a batch for a swimmer.
@@ -145,7 +145,7 @@ impl Batch {
     }
 
     /// Evaluates the first `count` of these shapes.
-    fn some<E: Blocks<B>, const B: usize>(&self, shapes: &Shapes, count: usize) -> Found<B> {
+    fn some<E: Blocks<B>, const B: usize>(&self, shapes: &Shapes, count: usize) -> BlockEntries<B> {
         let mut found = [[[[0.0; WIDTH]; ENTRIES]; B]; GROUPS];
         self.machine.dispatch(Groups::<E, B> {
             model: &self.model,
@@ -161,7 +161,7 @@ impl Batch {
 struct Groups<'a, E, const B: usize> {
     model: &'a Model<f64>,
     shapes: &'a [[[f64; WIDTH]; 2]],
-    found: &'a mut Found<B>,
+    found: &'a mut BlockEntries<B>,
     blocks: PhantomData<E>,
 }
 
