@@ -36,19 +36,19 @@ pub(crate) struct TraceOptions {
     /// `true` to leave a bound when its multiplier falls to zero.
     pub(crate) leaves: bool,
     /// Earlier contacts of the quarter with the diagonals.
-    pub(crate) met: Met,
+    pub(crate) met: DiagonalContacts,
 }
 
 /// Contacts of a quarter with the diagonals. It may not touch either of them again at these places.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Met {
+pub(crate) struct DiagonalContacts {
     /// The lowest and the highest φ₁ + φ₂ on φ₁ = φ₂.
     start: [f64; 2],
     /// φ₂ − φ₁ where it met φ₁ = −φ₂ first, and up to where it ran along that line.
     end: Option<[f64; 2]>,
 }
 
-impl Met {
+impl DiagonalContacts {
     /// Of a quarter that begins in a state.
     pub(super) fn beginning(state: &State) -> Self {
         Self {
@@ -90,7 +90,7 @@ pub(crate) enum TraceEnd {
 #[derive(Debug, Clone)]
 pub(crate) struct Quarter {
     pub(crate) legs: Vec<Leg>,
-    pub(crate) met: Met,
+    pub(crate) met: DiagonalContacts,
     pub(crate) fate: TraceEnd,
     pub(crate) end: State,
 }

@@ -8,7 +8,7 @@ use swimmer_files::{ArcKind, Bounds};
 use swimmer_model::Model;
 
 use super::flow::{
-    FINE, Met, Quarter, Touch, TraceEnd, TraceOptions, follow, is_end_line, lasting,
+    FINE, DiagonalContacts, Quarter, Touch, TraceEnd, TraceOptions, follow, is_end_line, lasting,
 };
 use crate::arcs::Leg;
 use crate::momentum::{Flow, Momentum, Motion, State, Track, pose, shape};
@@ -133,7 +133,7 @@ fn options(began: &State, leaves: bool) -> TraceOptions {
     TraceOptions {
         control: FINE,
         leaves,
-        met: Met::beginning(began),
+        met: DiagonalContacts::beginning(began),
     }
 }
 
@@ -218,9 +218,9 @@ impl StartFamily {
     }
 
     /// Contacts with the diagonals of a quarter that leaves the family in a state.
-    pub(crate) fn met(&self, state: &State) -> Met {
+    pub(crate) fn met(&self, state: &State) -> DiagonalContacts {
         let begins = self.start().map_or(*state, |start| start.state);
-        let met = Met::beginning(&begins);
+        let met = DiagonalContacts::beginning(&begins);
         match self {
             Self::EndLine {
                 stretches, turn, ..

@@ -1,7 +1,7 @@
 //! One extremal, from a place on a family to where it ends: traced once up to φ₁ = −φ₂, and on from there for each line.
 
 use super::super::Fates;
-use super::super::flow::{FINE, Met, Quarter, Touch, TraceEnd, TraceOptions, follow, lasting};
+use super::super::flow::{FINE, DiagonalContacts, Quarter, Touch, TraceEnd, TraceOptions, follow, lasting};
 use super::super::start_family::{StartFamily, StartState};
 use super::{Candidate, MIDDLING, QuarterBranch, Search};
 use crate::momentum::{Flow, Motion, shape};
@@ -92,7 +92,7 @@ impl<'a> Search<'a> {
     pub(super) fn whole(&self, line: QuarterBranch<'_>, final_y: f64) -> Option<Quarter> {
         let StartState { state, motion } = line.family.start()?;
         let flow = self.flow(final_y, motion);
-        let options = options(FINE, Met::beginning(&state));
+        let options = options(FINE, DiagonalContacts::beginning(&state));
         let quarter = follow(flow, self.region, state, options);
         let shot = Shot {
             quarter,
@@ -153,7 +153,7 @@ impl Fates {
     }
 }
 
-fn options(control: StepControl, met: Met) -> TraceOptions {
+fn options(control: StepControl, met: DiagonalContacts) -> TraceOptions {
     TraceOptions {
         control,
         leaves: true,
