@@ -15,7 +15,7 @@ use nalgebra::Vector2;
 use swimmer_files::{AnyGait, ArcKind, Bounds, GaitFile};
 use swimmer_model::{Model, Tolerance, crossing_share, swim};
 
-pub(crate) use super::setting::Asked;
+pub(crate) use super::setting::GaitRequirements;
 use super::setting::{Goal, Setting};
 use crate::certificate::{Certificate, Check, Condition, SeenBy, again_within};
 use crate::cycle::Cycle;
@@ -28,7 +28,7 @@ use switching::Switching;
 /// A corner this close to a bound rests on it \[rad, or over L\].
 pub(super) const RESTS: f64 = 1e-8;
 
-impl Asked {
+impl GaitRequirements {
     /// Returns true if gaits join at this shape.
     pub(super) fn joins(&self, phi: &Vector2<f64>) -> bool {
         self.anchor
@@ -53,7 +53,7 @@ pub(super) fn of_cycle(
 pub(crate) fn certificate(
     (model, members): (&Model<f64>, &[(Member, f64)]),
     region: &Region,
-    asked: Asked,
+    asked: GaitRequirements,
     file: &GaitFile,
     gait: &AnyGait,
 ) -> Certificate {
@@ -90,7 +90,7 @@ pub(crate) fn certificate(
         region,
         rates: legs.rates,
         // Times are shares of the period here.
-        asked: Asked {
+        asked: GaitRequirements {
             period: asked.period.map(|_| 1.0),
             ..asked
         },

@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 use super::interior::Polygon;
 use super::problem::SpeedProblem;
 use super::selection::rough_groups;
-use super::setting::{Asked, HeadingRule, Setting};
+use super::setting::{GaitRequirements, HeadingRule, Setting};
 use super::starts::{IMAGES, start};
 
 /// Starts that lead to cycles of any heading, and how many different ones of those are paired.
@@ -16,7 +16,7 @@ const CYCLES: usize = 12;
 /// Closed polygons of pairs of the fastest cycles of any heading.
 pub(super) fn pairs(problem: &SpeedProblem, setting: &Setting) -> Vec<Vec<Vector2<f64>>> {
     let any = Setting {
-        asked: Asked {
+        asked: GaitRequirements {
             heading: HeadingRule::Any,
             ..setting.asked
         },

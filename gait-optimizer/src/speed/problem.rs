@@ -4,7 +4,7 @@ use swimmer_files::Bounds;
 use swimmer_model::{Model, Swimmer};
 
 use super::error::SpeedError;
-use super::setting::{Asked, HeadingRule, Setting};
+use super::setting::{GaitRequirements, HeadingRule, Setting};
 use crate::region::Region;
 
 /// Inputs of the fastest-gait search.
@@ -81,10 +81,10 @@ impl SpeedProblem {
             model,
             region,
             rates: self.rates.map(|rate| rate / fast),
-            asked: Asked {
+            asked: GaitRequirements {
                 heading: self.heading,
                 period: self.period.map(|period| period * fast),
-                ..Asked::default()
+                ..GaitRequirements::default()
             },
             members: &[],
         }

@@ -47,7 +47,7 @@ impl HeadingRule {
 
 /// Requirements on a gait other than bounds and limits.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Asked {
+pub(crate) struct GaitRequirements {
     pub(crate) heading: HeadingRule,
     /// The period, if it is prescribed.
     pub(crate) period: Option<f64>,
@@ -64,7 +64,7 @@ pub(crate) struct Setting<'a> {
     pub(crate) region: &'a Region,
     /// Largest |φ̇ᵢ|.
     pub(crate) rates: [f64; 2],
-    pub(crate) asked: Asked,
+    pub(crate) asked: GaitRequirements,
     /// Weighted members of an ensemble whose displacement is maximised; if empty, that of the model. Constraints on the whole
     /// chain hold for the model alone.
     pub(crate) members: &'a [(Member, f64)],

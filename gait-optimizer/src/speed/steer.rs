@@ -15,7 +15,7 @@ use swimmer_files::{AnyGait, Bounds, GaitFile, Objective};
 use swimmer_model::{Model, Swimmer, Tolerance, swim};
 
 use super::candidate::{self, SIDES, candidate, mended};
-use super::certificate::{Asked, certificate, of_cycle};
+use super::certificate::{GaitRequirements, certificate, of_cycle};
 use super::error::SpeedError;
 use super::polish::Polished;
 use super::problem::{SpeedProblem, validate};
@@ -277,12 +277,12 @@ pub(crate) fn certify_joined(
     Some(certificate((model, &[]), region, asked, file, gait))
 }
 
-fn asked((goal, heading): Kind, anchor: Option<Vector2<f64>>) -> Asked {
-    Asked {
+fn asked((goal, heading): Kind, anchor: Option<Vector2<f64>>) -> GaitRequirements {
+    GaitRequirements {
         heading,
         goal,
         anchor,
-        ..Asked::default()
+        ..GaitRequirements::default()
     }
 }
 

@@ -4,7 +4,7 @@ use swimmer_files::{AnyGait, GaitFile};
 use swimmer_model::Model;
 
 use super::legs::Legs;
-use super::{Asked, certificate};
+use super::{GaitRequirements, certificate};
 use crate::certificate::Certificate;
 use crate::region::Region;
 use crate::speed::setting::{Goal, HeadingRule};
@@ -21,10 +21,10 @@ pub(crate) fn certify_speed(
     // Times are fractions of its own period.
     let period = file.optimal_period.map(|_| 1.0);
     let of = |heading| {
-        let asked = Asked {
+        let asked = GaitRequirements {
             heading,
             period,
-            ..Asked::default()
+            ..GaitRequirements::default()
         };
         certificate((model, &[]), region, asked, file, gait)
     };

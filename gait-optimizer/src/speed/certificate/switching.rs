@@ -10,7 +10,7 @@ use swimmer_files::ArcKind;
 use super::super::setting::{Goal, HeadingRule};
 use super::affine::Affine;
 use super::legs::{Leg, Legs, Node};
-use super::{Asked, RESTS, on_bound};
+use super::{GaitRequirements, RESTS, on_bound};
 use crate::certificate::{Check, Condition};
 use crate::numerics::{lesser, worse};
 use crate::region::{Bound, Region};
@@ -34,7 +34,7 @@ pub(super) fn along(region: &Region, node: &Node) -> Option<(usize, Bound)> {
 pub(crate) struct Switching<'a> {
     region: &'a Region,
     legs: &'a Legs,
-    asked: Asked,
+    asked: GaitRequirements,
     /// σ₁ at both ends of each extreme leg.
     ends: Vec<Option<[Affine; 2]>>,
     solution: DVector<f64>,
@@ -43,7 +43,7 @@ pub(crate) struct Switching<'a> {
 }
 
 impl<'a> Switching<'a> {
-    pub(crate) fn new(region: &'a Region, legs: &'a Legs, asked: Asked) -> Self {
+    pub(crate) fn new(region: &'a Region, legs: &'a Legs, asked: GaitRequirements) -> Self {
         let mut this = Self {
             region,
             legs,
