@@ -1,13 +1,13 @@
 //! Safety invariants, checked after every transition.
 
 use super::event::Event;
-use super::world::Seen;
+use super::world::StepObservations;
 use link_protocol::{Request, ResetReason, StateName};
 
 const OFF: [StateName; 2] = [StateName::Stopped, StateName::EStopped];
 
 /// Panics if a step violates an invariant.
-pub(super) fn judge(before: StateName, event: Event, requests: &[Request], seen: &Seen) {
+pub(super) fn judge(before: StateName, event: Event, requests: &[Request], seen: &StepObservations) {
     use StateName::{EStopped, Settling, Stopped, Stopping};
     let (all, after) = (&seen.states, *seen.states.last().unwrap());
     let asked = match event {

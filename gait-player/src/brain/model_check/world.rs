@@ -47,7 +47,7 @@ pub(super) struct Acted {
 /// Observations of one step.
 #[derive(Default)]
 #[allow(clippy::struct_excessive_bools)] // facts, not states
-pub(super) struct Seen {
+pub(super) struct StepObservations {
     /// State after each tick, in order, without repeats.
     pub(super) states: Vec<StateName>,
     /// Accepted request.
@@ -85,7 +85,7 @@ impl World {
             last_beat: Vec::new(),
             jumper: false,
         };
-        world.tick(&mut Seen::default());
+        world.tick(&mut StepObservations::default());
         world
     }
 
@@ -94,11 +94,11 @@ impl World {
         self.seal.is_some() || !matches!(event, Event::Unsigned(_))
     }
 
-    pub(super) fn step(&mut self, event: Event, requests: &[Request]) -> Seen {
-        let mut seen = Seen {
+    pub(super) fn step(&mut self, event: Event, requests: &[Request]) -> StepObservations {
+        let mut seen = StepObservations {
             fresh: !self.brain.session.silent(self.now_us),
             present: self.via == Transport::Usb || self.brain.bench.open(self.now_us),
-            ..Seen::default()
+            ..StepObservations::default()
         };
         let standing = self.standing(event, requests);
         let acted_before = self.brain.counted.acted;
@@ -228,7 +228,7 @@ impl World {
             + u8::from(brain.bench.leaves(u64::MAX))
     }
 
-    fn tick(&mut self, seen: &mut Seen) {
+    fn tick(&mut self, seen: &mut StepObservations) {
         self.now_us += u64::from(TICK_US);
         let inputs = Inputs {
             battery_mv: self.battery_mv,
