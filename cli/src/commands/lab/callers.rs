@@ -25,7 +25,7 @@ struct Known {
 
 /// Admission of a caller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Place {
+pub(super) enum CallerAdmission {
     /// A page.
     Page,
     /// There are too many pages.
@@ -67,15 +67,15 @@ impl Caller {
     }
 
     /// It has shown the token: from now on it makes way for nobody.
-    pub(super) fn becomes_page(&mut self) -> Place {
+    pub(super) fn becomes_page(&mut self) -> CallerAdmission {
         let mut known = locked(&self.known.0);
         known.callers.retain(|(id, _)| *id != self.id);
         if known.pages >= MOST_PAGES {
-            return Place::None;
+            return CallerAdmission::None;
         }
         known.pages += 1;
         self.is_page = true;
-        Place::Page
+        CallerAdmission::Page
     }
 }
 

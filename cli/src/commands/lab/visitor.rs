@@ -10,7 +10,7 @@ use link_protocol::Decoder;
 use tungstenite::protocol::{Role, WebSocketConfig};
 use tungstenite::{Error, Message, WebSocket};
 
-use super::callers::{Caller, Place};
+use super::callers::{Caller, CallerAdmission};
 use super::gate::{Gate, PROTOCOL, Refusal, Wanted};
 use super::hub::{Ask, Ended, FromPage, FromPageStop, PageId, ToHub, ToPage};
 
@@ -56,7 +56,7 @@ impl Server {
                 let length = self.page.len();
                 answer(&mut stream, "200 OK", "text/html", length, body)
             }
-            Ok(Wanted::Link { .. }) if caller.becomes_page() == Place::None => {
+            Ok(Wanted::Link { .. }) if caller.becomes_page() == CallerAdmission::None => {
                 let body = "too many pages have the link open: close some\n";
                 let (status, kind) = ("503 Service Unavailable", "text/plain; charset=utf-8");
                 answer(&mut stream, status, kind, body.len(), body.as_bytes())
