@@ -2,8 +2,8 @@
 
 mod diagnoses;
 mod either;
+mod reported;
 mod same;
-mod told;
 
 use std::path::PathBuf;
 
@@ -20,8 +20,8 @@ use crate::prediction::Played;
 use crate::quantities::{QUANTITIES, predicted};
 
 pub(crate) use either::EitherRun;
+pub(crate) use reported::ReportedRun;
 pub(crate) use same::same_recordings;
-pub(crate) use told::ReportedRun;
 
 /// One run's outcome.
 #[derive(Debug, Clone)]

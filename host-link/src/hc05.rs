@@ -3,9 +3,9 @@
 //! [`Dialogue`] is the state machine over bytes and times; [`converse`] runs it over a [`Port`]. Correct settings stay
 //! untouched. New settings are read back, because some modules reply OK and keep the old value.
 
-mod answer;
 mod dialogue;
 mod error;
+mod reply;
 
 use std::fmt;
 use std::time::Duration;

@@ -8,7 +8,7 @@ use swimmer_files::{ArcKind, Bounds};
 use swimmer_model::Model;
 
 use super::flow::{
-    FINE, DiagonalContacts, Quarter, Touch, TraceEnd, TraceOptions, follow, is_end_line, lasting,
+    DiagonalContacts, FINE, Quarter, Touch, TraceEnd, TraceOptions, follow, is_end_line, lasting,
 };
 use crate::arcs::Leg;
 use crate::momentum::{Flow, Momentum, Motion, State, Track, pose, shape};

@@ -3,7 +3,7 @@
 use std::mem::take;
 use std::time::Duration;
 
-use super::answer::{Lines, ReplyLine};
+use super::reply::{Lines, ReplyLine};
 use super::{Hc05Error, Module, Outcome, Setting, Uart, Wanted};
 
 /// Time-out of a command. Some modules need most of a second to report their name.

@@ -1,7 +1,9 @@
 //! One extremal, from a place on a family to where it ends: traced once up to φ₁ = −φ₂, and on from there for each line.
 
 use super::super::Fates;
-use super::super::flow::{FINE, DiagonalContacts, Quarter, Touch, TraceEnd, TraceOptions, follow, lasting};
+use super::super::flow::{
+    DiagonalContacts, FINE, Quarter, Touch, TraceEnd, TraceOptions, follow, lasting,
+};
 use super::super::start_family::{StartFamily, StartState};
 use super::{Candidate, MIDDLING, QuarterBranch, Search};
 use crate::momentum::{Flow, Motion, shape};

@@ -7,7 +7,12 @@ use link_protocol::{Request, ResetReason, StateName};
 const OFF: [StateName; 2] = [StateName::Stopped, StateName::EStopped];
 
 /// Panics if a step violates an invariant.
-pub(super) fn judge(before: StateName, event: Event, requests: &[Request], seen: &StepObservations) {
+pub(super) fn judge(
+    before: StateName,
+    event: Event,
+    requests: &[Request],
+    seen: &StepObservations,
+) {
     use StateName::{EStopped, Settling, Stopped, Stopping};
     let (all, after) = (&seen.states, *seen.states.last().unwrap());
     let asked = match event {
