@@ -15,7 +15,7 @@
 //!
 //! ```
 //! use std::fmt::Write;
-//! use calibrate::{CampaignData, EvidenceOptions, FitOptions, Further, advise, amplitude_by_sway, assess, calibrate_campaign, fit_further};
+//! use calibrate::{CampaignData, EvidenceOptions, FitOptions, NuisanceParameter, advise, amplitude_by_sway, assess, calibrate_campaign, fit_further};
 //! use calibrate::{other_gaits, predict, weigh_evidence};
 //! use swimmer_files::{AnyGait, Campaign, SwimmerFile};
 //!
@@ -52,7 +52,7 @@
 //! let assessment = assess(&found, Some(&evidence))?;
 //! assert_ne!(assessment.verdict.word(), "do not use", "{:?}", assessment.reasons);
 //! assert!(!advise(&campaign, &found)?.candidates.is_empty());
-//! let scale = fit_further(&found, &[Further::Scale])?;
+//! let scale = fit_further(&found, &[NuisanceParameter::Scale])?;
 //! assert_eq!(scale.parameters.len(), 3);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

@@ -78,10 +78,10 @@ impl NuisanceParameter {
     /// The parameter of this word on the command line.
     ///
     /// ```
-    /// use calibrate::Further;
+    /// use calibrate::NuisanceParameter;
     ///
-    /// assert_eq!(Further::of_word("deadband"), Some(Further::DeadBand));
-    /// assert!(Further::ALL.iter().all(|further| Further::of_word(further.word()) == Some(*further)));
+    /// assert_eq!(NuisanceParameter::of_word("deadband"), Some(NuisanceParameter::DeadBand));
+    /// assert!(NuisanceParameter::ALL.iter().all(|further| NuisanceParameter::of_word(further.word()) == Some(*further)));
     /// ```
     pub fn of_word(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|further| further.word() == word)
@@ -311,7 +311,7 @@ fn starts(model: &RunModel, begun: &[f64]) -> Vec<Vec<f64>> {
 /// Beyond these, a correlation or a condition number is worth a warning.
 const ALIKE: f64 = 0.99;
 const ILL_CONDITIONED: f64 = 300.0;
-/// Gain in log-likelihood that one parameter brings by chance in one of fifty cases.
+/// Gain in log-likelihood that one parameter reaches by chance in one of fifty cases.
 const BY_CHANCE: f64 = 2.7;
 
 fn summary(

@@ -4,7 +4,7 @@ use super::*;
 use crate::Condition;
 use crate::member::Member;
 use crate::region::Region;
-use crate::speed::certificate::{Asked, certificate};
+use crate::speed::certificate::{GaitRequirements, certificate};
 use nalgebra::DVector;
 use swimmer_files::AnyGait;
 use swimmer_model::{Model, Tolerance, swim};
@@ -365,7 +365,7 @@ fn the_nominal_optimum_is_not_robust() {
         let curve = gait.gait().unwrap();
         let model = Model::new(&Swimmer::robot().of_unit_length()).unwrap();
         let region = Region::new(&problem.bounds, &model.swimmer().links);
-        let asked = Asked::default();
+        let asked = GaitRequirements::default();
         let certificate = certificate((&model, &members), &region, asked, &file, &curve);
         certificate.value(Condition::SwitchIntegrals).unwrap()
     };
