@@ -139,7 +139,7 @@ impl Cycles {
 pub(crate) struct Clock {
     period_s: f64,
     active_s: (f64, f64),
-    /// When it moved first.
+    /// Time of the first motion.
     motion_s: f64,
     steady: Vec<Bin>,
     starts: CycleStarts,
@@ -370,7 +370,7 @@ impl Clock {
     }
 }
 
-/// Why no motion was found: with a period that is far off, bins of its hundredths show none.
+/// Error for a recording without motion: with a very wrong period, its bins of hundredths show none.
 fn no_motion(track: &PoseTrack, period_s: f64) -> CycleError {
     let ends = track.samples.first().zip(track.samples.last());
     let track_s = ends.map_or(0.0, |(first, last)| last.time_s - first.time_s);

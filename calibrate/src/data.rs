@@ -30,7 +30,7 @@ pub struct RunData {
     pub period_s: f64,
     /// Point of the front reflector, if it differs from the other runs.
     pub front: Option<PointName>,
-    /// When its cycles began, where that is known.
+    /// Known starts of its cycles.
     pub timing: Timing,
 }
 

@@ -1,4 +1,4 @@
-//! Why there is no calibration: what can go wrong from a campaign's files to its fit.
+//! Errors of a calibration, from a campaign's files to its fit.
 
 use std::path::PathBuf;
 
@@ -10,7 +10,7 @@ use crate::poses::PoseError;
 use crate::prediction::PredictionError;
 use crate::tracks::TrackError;
 
-/// Why there is no calibration.
+/// Error of a calibration.
 #[derive(Debug, thiserror::Error)]
 pub enum CalibrateError {
     /// A tracking file or a link log cannot be opened.
@@ -104,7 +104,7 @@ impl From<InvalidSwimmer> for CalibrateError {
     }
 }
 
-/// Why nothing was fitted.
+/// Error of a fit.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FitError {
     /// The starting swimmer is invalid.

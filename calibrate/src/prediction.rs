@@ -28,7 +28,7 @@ const SAME_PACE: f64 = 1e-3;
 /// Pieces of a gait that becomes a path: chords cut off 1e-4 of its area.
 const PIECES: usize = 256;
 
-/// Why a cycle cannot be predicted.
+/// Error of the prediction of a cycle.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PredictionError {
     /// The parameters describe no swimmer.

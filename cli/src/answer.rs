@@ -18,7 +18,7 @@ pub struct Answered {
     pub notes: Vec<String>,
 }
 
-/// Why a command gave no answer.
+/// Failure of a command.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Refused {
     /// The sentence that standard error would show, without its `error: `.

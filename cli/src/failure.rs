@@ -5,7 +5,7 @@ use operations::{Error, ErrorKind};
 
 use crate::output::verbose;
 
-/// Why a command did not do its job; the text says what was being done, to what, and what to do next.
+/// Failure of a command; the text names the action, its object, and the next step.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
     /// It was tried and did not work: no convergence, the robot refused, no answer. Exit status 1.

@@ -93,7 +93,7 @@ pub(crate) fn answers_with(output: Output) {
 /// stays its own.
 ///
 /// # Errors
-/// When the operating system refuses the handler.
+/// The operating system refuses the handler.
 pub(crate) fn listen() -> Result<(), ctrlc::Error> {
     if handed_over() {
         return Ok(());

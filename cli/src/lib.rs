@@ -141,7 +141,7 @@ fn bad_usage(error: &clap::Error, words: &[OsString]) -> u8 {
     BAD_INPUT
 }
 
-/// Why the words are no command, without what follows about usage.
+/// Reason of a parse error, without the usage that follows.
 fn reason(error: &clap::Error) -> String {
     let text = error.render().to_string();
     let first: Vec<&str> = text

@@ -66,7 +66,7 @@ impl Recorder {
     /// Ends the log and says where it is; returns the number of frames.
     ///
     /// # Errors
-    /// When the disk refused a frame or the end.
+    /// The disk refused a frame or the end.
     pub(crate) fn finish(self) -> Outcome<u64> {
         let mut recording = locked(&self.0);
         let finished = recording.finish();

@@ -230,7 +230,7 @@ impl Curve {
 }
 
 impl Timing {
-    /// When the shape `u` of the original parametrisation is reached, as a fraction of the period: exact at the ends of
+    /// Time at which the shape `u` of the original parametrisation is reached, as a fraction of the period: exact at the ends of
     /// the gait's pieces, linear between cells.
     pub fn fraction_at(&self, u: f64) -> f64 {
         let i = self

@@ -1,4 +1,4 @@
-//! Frames and what a bad line makes of them.
+//! Frames, and the faults of a link.
 
 use arbitrary::Arbitrary;
 use link_protocol::{

@@ -131,7 +131,7 @@ pub struct Atlas {
     pub best_uncertified: Option<f64>,
 }
 
-/// Why there is no atlas.
+/// Error of an atlas.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum AtlasError {
     /// It makes no sense.

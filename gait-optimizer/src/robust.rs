@@ -120,7 +120,7 @@ pub struct Robustness {
     pub links_cross: [f64; 2],
 }
 
-/// A robust gait, with what robustness costs and brings.
+/// A robust gait, with cost and benefit of its robustness.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RobustGait {
     /// The gait; its numbers are those of the nominal swimmer.

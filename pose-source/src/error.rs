@@ -7,7 +7,7 @@ use calibrate::TrackError;
 
 use crate::natnet::NatNetError;
 
-/// Why a source ended before its end.
+/// Error of a source.
 #[derive(Debug, thiserror::Error)]
 pub enum SourceError {
     /// The NatNet server refused, or what it sends cannot be read.
@@ -58,7 +58,7 @@ pub enum SourceError {
     Thread(io::Error),
 }
 
-/// Why a recording could not be written.
+/// Error of writing a recording.
 #[derive(Debug, thiserror::Error)]
 #[error("writing the recording {}: {cause}; does its folder exist, and is the disk full?", path.display())]
 pub struct RecordError {

@@ -30,7 +30,7 @@ const POINT_CLOUD_SOLVED: u16 = 0x02;
 const HAS_MODEL: u16 = 0x08;
 const UNLABELED: u16 = 0x10;
 
-/// Why a NatNet stream cannot be read.
+/// Error of a NatNet stream.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum NatNetError {
     /// The stream has a version that is not read.

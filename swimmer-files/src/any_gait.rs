@@ -45,7 +45,7 @@ impl AnyGait {
     /// The samples of a gait file, interpolated as [`swimmer_model::Sampled`] does.
     ///
     /// # Errors
-    /// When the samples make no closed curve; those of a file that was read do.
+    /// The samples make no closed curve; those of a file that was read do.
     pub fn from_file(file: &GaitFile) -> Result<Self, InvalidSamples> {
         let corners: Vec<usize> = file
             .corners

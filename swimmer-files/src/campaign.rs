@@ -190,7 +190,7 @@ pub struct CampaignRun {
     pub period_s: f64,
     /// `front`: which point the front reflector is in this run's file, where it is not as in `[reflectors]`.
     pub front: Option<PointName>,
-    /// When its cycles began, where that is known.
+    /// Known starts of its cycles.
     pub timing: RunTiming,
     /// `exclude`: why it is not to be fitted.
     pub exclude: Option<String>,

@@ -32,7 +32,7 @@ pub enum GaitSpec {
     },
 }
 
-/// Why a text names no gait.
+/// Error of parsing the name of a gait.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum GaitSpecError {
     /// The amplitude is no angle.

@@ -46,7 +46,7 @@ pub fn link_log_bytes(frames: &[LinkFrame]) -> Result<Vec<u8>, LinkLogError> {
     Ok(bytes.into_inner())
 }
 
-/// Why a link log could not be written or read.
+/// Error of writing or reading a link log.
 #[derive(Debug, thiserror::Error)]
 pub enum LinkLogError {
     /// The file itself.

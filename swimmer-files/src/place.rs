@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-/// Why a file could not be read or written.
+/// Error of reading or writing a file.
 ///
 /// ```
 /// use swimmer_files::{FileError, SwimmerFile};

@@ -136,7 +136,7 @@ impl fmt::Display for Slip {
     }
 }
 
-/// Why a text is not an angle or a rate.
+/// Error of parsing an angle or a rate.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum AngleError {
     /// It cannot be read.
@@ -209,7 +209,7 @@ pub fn parse_rate(text: &str) -> Result<f64, AngleError> {
     })
 }
 
-/// Why a text is refused.
+/// Reason of a parse error.
 enum Parse {
     Unreadable(AngleError),
     /// The text and its value.

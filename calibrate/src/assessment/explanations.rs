@@ -91,7 +91,7 @@ pub struct Explanation {
 }
 
 impl Explanation {
-    /// Gain less what as many parameters bring by chance.
+    /// Gain minus the gain that as many parameters have by chance.
     pub(super) fn worth(&self) -> f64 {
         self.gain - self.parameters.len() as f64
     }

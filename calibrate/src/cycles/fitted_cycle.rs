@@ -18,7 +18,7 @@ const NEAR: f64 = 0.015;
 /// A cycle's curve.
 #[derive(Debug, Clone)]
 pub(super) struct FittedCycle {
-    /// When it starts \[s\].
+    /// Start \[s\].
     pub(super) start_s: f64,
     /// Share of missing samples.
     pub(super) missing: f64,

@@ -70,7 +70,7 @@ pub(super) struct Log {
 }
 
 impl Log {
-    /// When the play's first cycle began, if the flash was any cycle's of the play: soon after the first motion.
+    /// Start of the play's first cycle, if the flash may be that of any cycle of the play: soon after the first motion.
     fn first_by_flash(&self, motion_s: f64) -> Option<f64> {
         let flash_s = self.flash_s?;
         let wanted = motion_s + SOFT_START_S;

@@ -69,7 +69,7 @@ impl fmt::Display for CycleWarning {
     }
 }
 
-/// Why a whole cycle was left out.
+/// Reason for leaving out a whole cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LeftOut {
     /// The first one.

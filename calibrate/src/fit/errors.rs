@@ -144,7 +144,7 @@ fn states_error(s: &Statistics) -> bool {
     s.sd.is_nan() && s.se.is_finite()
 }
 
-/// The lag-1 correlation of all runs together, freed of the bias −1/n that a run's own mean brings.
+/// The lag-1 correlation of all runs together, corrected for the bias −1/n due to a run's own mean.
 fn common_lag(runs: &[Statistics]) -> f64 {
     let (mut products, mut squares) = (0.0, 0.0);
     for s in runs

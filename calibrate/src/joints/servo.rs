@@ -6,7 +6,7 @@ use super::curve::{AngleCurve, Fitted};
 use super::{Measured, MeasuredServo};
 use crate::least_squares::{Model, minimise};
 
-/// Places of a cycle at which both courses are held against each other.
+/// Number of places of a cycle at which both courses are compared.
 const PLACES: usize = 256;
 /// Dead bands from which the search starts \[rad\].
 const DEAD_BANDS: [f64; 3] = [0.01, 0.06, 0.15];

@@ -1,6 +1,6 @@
-//! Why there are no poses.
+//! Errors of the pose reconstruction.
 
-/// Why a track gave no poses.
+/// Error of the pose reconstruction.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PoseError {
     /// A reflector's point is not in the file.

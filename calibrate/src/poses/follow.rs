@@ -352,7 +352,7 @@ fn is_other(
     others.iter().any(|other| (at - other).norm_squared() < own)
 }
 
-/// The pair that goes on from a known state.
+/// The pair that continues a known state.
 fn next(
     search: &Search<'_>,
     state: &State,

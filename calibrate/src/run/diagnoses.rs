@@ -9,7 +9,7 @@ const FAR: f64 = 0.01;
 /// Number of stretches whose times are printed; JSON lists all.
 const TOLD: usize = 4;
 
-/// When stretches were.
+/// Times of the stretches.
 fn times(stretches: &[Stretch]) -> String {
     let time = |stretch: &Stretch| {
         if stretch.rows > 1 {

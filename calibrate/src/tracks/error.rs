@@ -21,7 +21,7 @@ impl fmt::Display for FilePosition {
     }
 }
 
-/// Why a tracking file gave no tracks.
+/// Error of reading a tracking file.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TrackError {
     /// A line does not say what it must.

@@ -24,7 +24,7 @@ pub(super) const LARGEST_ANGLE: f64 = 2.0 * std::f64::consts::PI + 1e-3;
 /// Source of a row's time.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Clock {
-    /// Frame number over rate: the time column is rounded, and is only held against it.
+    /// Frame number over rate: the time column is rounded, and is only compared with it.
     Numbered {
         frame: usize,
         /// The frame number at time zero.

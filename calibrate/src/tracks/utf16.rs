@@ -9,7 +9,7 @@ const BUFFER: usize = 1 << 16;
 pub(super) struct Utf16<'s> {
     bytes: Box<dyn Read + 's>,
     unit: fn([u8; 2]) -> u16,
-    /// Read and not yet decoded: what may go on with the next piece.
+    /// Read but not yet decoded bytes, which may continue in the next piece.
     rest: Vec<u8>,
     text: io::Cursor<String>,
 }

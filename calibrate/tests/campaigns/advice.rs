@@ -1,4 +1,4 @@
-//! Advice is held against what happens when it is followed.
+//! Predictions of the advice compared with the result of following it.
 
 use crate::twin_campaigns;
 
@@ -34,7 +34,7 @@ fn laboratory(amplitudes: &[f64], seed: u64) -> Laboratory {
     }
 }
 
-/// Runs between 45° and 75°: the largest circle narrows the intervals as much as was foretold, the smallest one hardly.
+/// Runs between 45° and 75°: the largest circle narrows the intervals as much as predicted, the smallest one hardly.
 #[test]
 fn advice_that_is_followed_narrows_the_intervals() {
     let base = [45.0, 55.0, 65.0, 75.0];

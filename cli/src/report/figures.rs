@@ -194,7 +194,7 @@ fn over_time(y_label: &str, series: Vec<Series>) -> Outcome<String> {
     .svg()
 }
 
-/// The gait in the plane of the joint angles: arcs, what the joints make of them, uploaded set-points, the bound.
+/// The gait in the plane of the joint angles: arcs, true joint angles, uploaded set-points, the bound.
 pub(super) fn gait(gait: &GaitPicture) -> Outcome<String> {
     let degrees = |shape: &[f64; 2]| (shape[0].to_degrees(), shape[1].to_degrees());
     let bound = gait.bound.to_degrees();

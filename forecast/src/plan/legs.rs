@@ -20,7 +20,7 @@ const MOST_CYCLES: f64 = 400.0;
 /// A target is met so closely (m and rad).
 const MET: f64 = 1e-10;
 
-/// All chains that are found to bring what is wanted, from the common shape to the common shape.
+/// All chains with the wanted net pose that are found, from the common shape to the common shape.
 pub(super) fn chains(nets: &Nets, wanted: &Pose<f64>) -> Vec<Vec<Step>> {
     let of = |word| Search {
         nets,

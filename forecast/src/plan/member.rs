@@ -1,4 +1,4 @@
-//! Members of a family: a gait drawn towards the common shape, and what a cycle of it brings.
+//! Members of a family: a gait scaled towards the common shape, and the net pose of its cycle.
 
 use gait_player::table::TableError;
 use nalgebra::Vector2;

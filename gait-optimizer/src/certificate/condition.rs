@@ -1,10 +1,10 @@
-//! Every condition that a certificate may hold: what it says, its key in answers and its tolerance, each once.
+//! All conditions of certificates: meaning, key in outputs and tolerance, defined once each.
 
 use swimmer_files::GaitFile;
 
 use super::{Check, SeenBy};
 
-/// Conditions with what they say, their keys, and what their numbers are held against: from above (`<=`) or from below (`>=`).
+/// Conditions with their meaning, key and tolerance: an upper bound (`<=`) or a lower bound (`>=`) of the value.
 macro_rules! conditions {
     ($($(#[$says:meta])+ $name:ident: $key:literal $side:tt $tolerance:expr;)+) => {
         /// A condition of an optimum, or of what its numbers rest on.

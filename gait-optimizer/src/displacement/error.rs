@@ -1,4 +1,4 @@
-//! Why there is no displacement gait to return.
+//! Errors of the displacement search.
 
 use std::fmt;
 
@@ -65,7 +65,7 @@ impl fmt::Display for Fates {
     }
 }
 
-/// Why there is no displacement gait to return.
+/// Error of the displacement search.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum DisplacementError {
     /// It makes no sense.

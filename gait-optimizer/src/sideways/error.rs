@@ -1,10 +1,10 @@
-//! Why there is no gait that moves sideways.
+//! Errors of the sideways search.
 
 use swimmer_files::Bounds;
 
 use crate::atlas::AtlasError;
 
-/// Why there is no gait that moves sideways.
+/// Error of the sideways search.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SidewaysError {
     /// The problem makes no sense.

@@ -1,4 +1,4 @@
-//! One arc: a curve between two shapes, the pose it brings, and how that pose depends on what the arc is made of.
+//! One arc: a curve between two shapes, its net pose, and the derivatives of that pose by the arc's parameters.
 //!
 //! Every arc is a graph over one joint angle that runs at an even rate, so time is linear along it. Values and slopes are
 //! those of one and the same quadrature: a Newton method on them converges to rounding.

@@ -1,10 +1,10 @@
-//! Why there is no turning gait to return.
+//! Errors of the turning search.
 
 use nalgebra::Vector2;
 
 use crate::problem::InvalidProblem;
 
-/// Why there is no turning gait to return.
+/// Error of the turning search.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TurningError {
     /// It makes no sense.

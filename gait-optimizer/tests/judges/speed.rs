@@ -399,7 +399,7 @@ fn long_singular_arcs_are_followed_closely() {
     assert!(by_two_methods(links, 3.244_072_132_870_433_4, 2.4) > 0.011);
 }
 
-/// A curve of angles run at full rate: what it brings, its time and ∫θ dt.
+/// A curve of angles run at full rate: its net pose, its time and ∫θ dt.
 #[derive(Clone, Copy, Default)]
 struct Run(Pose, f64, f64);
 

@@ -27,7 +27,7 @@ pub(super) struct Container<W: Write + Seek> {
     /// To the robot, from it, and its telemetry.
     channels: [u16; 3],
     sequence: u32,
-    /// When the chunk being filled began.
+    /// Start time of the chunk being filled.
     chunk_began_ns: Option<u64>,
 }
 

@@ -23,7 +23,7 @@ pub struct LinkLog {
 /// Reads a link log, also one that was cut off.
 ///
 /// # Errors
-/// When the file cannot be read, is no MCAP file, or holds a message that is not a link frame.
+/// The file cannot be read, is no MCAP file, or holds a message that is not a link frame.
 pub fn read_link_log(path: &Path) -> Result<LinkLog, LinkLogError> {
     let bytes = std::fs::read(path).map_err(|source| FileError::Read {
         path: path.to_path_buf(),

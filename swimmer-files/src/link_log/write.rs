@@ -69,7 +69,7 @@ impl LinkLogWriter {
     /// Starts a log. An existing file is replaced with the first frame.
     ///
     /// # Errors
-    /// When the file cannot be made in its folder.
+    /// The file cannot be made in its folder.
     pub fn create(path: &Path) -> Result<Self, LinkLogError> {
         let write_error = |source| FileError::Write {
             path: path.to_path_buf(),
@@ -120,7 +120,7 @@ impl LinkLogWriter {
     /// Adds a frame as it crossed the wire, sound or not.
     ///
     /// # Errors
-    /// When the disk refuses; what was written before stays, and nothing more is taken.
+    /// A write error; the frames before are kept, and no further ones are accepted.
     pub fn write(&mut self, frame: &LinkFrame) -> Result<(), LinkLogError> {
         self.begun()?;
         self.container
@@ -132,7 +132,7 @@ impl LinkLogWriter {
     /// Ends the log.
     ///
     /// # Errors
-    /// When the disk refuses; what was written before stays.
+    /// A write error; the frames before are kept.
     pub fn finish(mut self) -> Result<(), LinkLogError> {
         self.begun()?;
         let Some(container) = self.container.take() else {

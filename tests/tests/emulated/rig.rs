@@ -208,7 +208,7 @@ pub(crate) fn angles(period: &Period) -> [f64; 2] {
         .map(|us| (us - f64::from(centre_ns) * 1e-3) * slope)
 }
 
-/// When the pulses began to move as only a stop moves them: faster than any gait or soft start of these tests.
+/// Start of the pulses of a stop: they change faster than in any gait or soft start of these tests.
 pub(crate) fn ramp_begins(periods: &[Period]) -> Duration {
     /// Largest step of an angle in 20 ms, except for those of a stop \[rad\].
     const GENTLE: f64 = 0.05;

@@ -148,7 +148,7 @@ fn live_until<P: Port>(robot: &mut Robot<P>, state: StateName) {
     assert_eq!(robot.telemetry().unwrap().state, state);
 }
 
-/// When the first cycle began \[s on the robot's clock\].
+/// Start of the first cycle \[s on the robot's clock\].
 fn first_cycle<P: Port>(robot: &mut Robot<P>, period_s: f64) -> f64 {
     live_until(robot, StateName::Playing);
     let telemetry = robot.telemetry().unwrap();

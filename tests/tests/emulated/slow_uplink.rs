@@ -52,7 +52,7 @@ impl Delivered {
         })
     }
 
-    /// When the last fresh one came. The robot's clock and the port's both began when its power came on.
+    /// Time of the last fresh one. The robot's clock and the port's both began when its power came on.
     fn last_fresh(&self) -> Duration {
         let (mut latest, mut last) = (Duration::ZERO, Duration::ZERO);
         for &(at, heard) in self.0.lock().unwrap().iter() {

@@ -108,7 +108,7 @@ fn change_sides(votes: &[bool]) -> bool {
     first.map(agree) != last.map(agree)
 }
 
-/// Segments, joined where the heading goes on from one to the next.
+/// Segments, joined if the heading continues from one to the next.
 fn groups(search: &Search<'_>, rows: Vec<Row>, starts: &[usize]) -> Vec<Vec<Row>> {
     let fastest = fastest_turn(search, &rows);
     let mut groups: Vec<Vec<Row>> = Vec::new();

@@ -126,7 +126,7 @@ impl Search<'_> {
         }
     }
 
-    /// When a row was \[s\].
+    /// Time of a row \[s\].
     pub(super) fn time(&self, row: &Row) -> f64 {
         self.track.times.get(row.index).copied().unwrap_or(0.0)
     }

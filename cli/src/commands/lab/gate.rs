@@ -60,7 +60,7 @@ pub(super) enum Wanted {
     Link { accept: String },
 }
 
-/// Why a request is not let in.
+/// Refusal of a request, with its HTTP status.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Refusal {
     pub(super) status: &'static str,

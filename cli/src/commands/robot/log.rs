@@ -1,4 +1,4 @@
-//! `swimmer robot log` and `replay`: every frame on the wire into a file, and the file held against the brain.
+//! `swimmer robot log` and `replay`: records every frame on the wire in a file, and replays the file to the brain.
 
 use std::fmt;
 use std::time::Duration;
@@ -54,7 +54,7 @@ struct Comparison {
     same: bool,
     /// same, differs, undecided
     verdict: &'static str,
-    /// Why nothing is decided; `null` otherwise.
+    /// Reason for an undecided comparison; `null` otherwise.
     undecided: Option<String>,
     compared: usize,
     different: usize,
@@ -132,7 +132,7 @@ impl Comparison {
     }
 }
 
-/// Why nothing is decided, and what to do about it.
+/// Reason for an undecided comparison, with the next step.
 fn sentence(reason: Reason) -> String {
     match reason {
         Reason::NothingCompared => {

@@ -221,7 +221,7 @@ pub(super) fn pause(access: &Access, pause: &Pause, output: Output) -> Outcome {
     line.close()
 }
 
-/// `swimmer robot resume`: goes on and waits for the end of the last cycle.
+/// `swimmer robot resume`: continues the play and waits for the end of the last cycle.
 pub(super) fn resume(access: &Access, output: Output) -> Outcome {
     let interrupt = Interrupt::install_with_a_robot()?;
     let mut line = match access.meet(Ask::Resume, "swimmer robot resume", Pace::RealTime)? {

@@ -61,7 +61,7 @@ pub(super) struct Opened {
     pub(super) name: String,
 }
 
-/// Why a port is not open.
+/// Error of opening a port.
 pub(super) enum NotOpen {
     /// Somebody else has it, perhaps only for the moment of a short command.
     Busy(Failure),

@@ -16,7 +16,7 @@ use crate::output::aside;
 /// Longest time from a stop to pulses off: a second of ramp, half a second of rest, and some for the link.
 pub(super) const TO_REST: Duration = Duration::from_secs(5);
 
-/// A play that goes on detached is left alone: another begins only when it has ended or was stopped.
+/// A detached play is left alone: another begins only when it has ended or was stopped.
 pub(super) fn nothing_under_way(status: &Status) -> Outcome {
     if !is_under_way(status.state) {
         return Ok(());

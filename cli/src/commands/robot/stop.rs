@@ -113,7 +113,7 @@ fn run(access: &Access, ask: Ask, take_over: TakeOver, output: Output) -> Outcom
     Ok(())
 }
 
-/// The stop alone first; how it goes on is only good to know.
+/// Sends the stop first; the state afterwards is for information only.
 fn stop_at_once(
     access: &Access,
     port: AnyPort,

@@ -33,7 +33,7 @@ struct Uploaded {
     seconds: f64,
     /// Predicted duration of the upload.
     predicted_seconds: f64,
-    /// `null` for a gait of which nothing can be foretold.
+    /// `null` for a gait without a prediction.
     preflight: Option<Preflight>,
     #[serde(skip)]
     name: String,

@@ -23,7 +23,7 @@ pub(crate) struct Node {
     pub(crate) height: [f64; 3],
     /// Gradients of the same.
     pub(crate) slope: [Vector2<f64>; 3],
-    /// Rotation that each joint's motion brings, and how it changes along that joint.
+    /// Rotation per unit motion of each joint, and its derivative along that joint.
     pub(crate) turn: [f64; 2],
     pub(crate) turn_slope: [f64; 2],
 }

@@ -1,4 +1,4 @@
-//! The poses that a straight side in the plane of joint angles brings, one for each swimmer.
+//! Net poses of a straight side in the plane of joint angles, one for each swimmer.
 
 use std::ops::Mul;
 

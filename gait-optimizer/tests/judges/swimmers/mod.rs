@@ -1,4 +1,4 @@
-//! Swimmers and bounds of all kinds, for every objective: drawn from a seed, with simple gaits to be held against.
+//! Swimmers and bounds of all kinds, for every objective: sampled with a seed, with simple gaits for comparison.
 
 mod apart;
 

@@ -125,7 +125,7 @@ impl Ask {
     }
 }
 
-/// Why the holder of a port gave no answer.
+/// Reason for a missing reply of the holder of a port.
 #[derive(Debug)]
 pub(in super::super) enum Unanswered {
     /// It did, and it is no.

@@ -23,7 +23,7 @@ pub(super) fn beside(port: &str) -> Option<BesidePort> {
 /// Ends the process, which must be a `swimmer`, and waits until `is_gone`.
 ///
 /// # Errors
-/// Why it was left alone, as a clause.
+/// The reason why it was left alone, as a clause.
 pub(super) fn end(process: &str, is_gone: impl Fn() -> bool) -> Result<(), String> {
     // Numbers below one mean groups of processes to the system.
     let number = process.parse().ok().filter(|number: &i32| *number > 0);

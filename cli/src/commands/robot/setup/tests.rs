@@ -68,7 +68,7 @@ const PROMPTS: &[Prompt] = &[
 
 /// Result of a set-up with these answers.
 struct Left {
-    /// Why it ended; `None` at its end.
+    /// Error at its end; `None` after success.
     failure: Option<String>,
     printed: String,
     /// After the robot was left.

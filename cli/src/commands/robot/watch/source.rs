@@ -138,7 +138,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// A clock that goes on while the robot lives.
+    /// A clock that runs while the robot does.
     pub(super) fn now(&self) -> Duration {
         match self {
             Self::Own(line) => line.robot.port().now(),
