@@ -1,4 +1,4 @@
-//! A fit of the sphere and χ to results that somebody wrote down: `cargo run --release -p calibrate --example fit_results CAMPAIGN.toml`
+//! A fit of the sphere and χ to reported results: `cargo run --release -p calibrate --example fit_results CAMPAIGN.toml`
 
 use calibrate::{CampaignData, FitOptions, assess, calibrate_campaign};
 use swimmer_files::Campaign;

@@ -114,7 +114,7 @@ impl CampaignData {
 
 /// Reader of a campaign's files, one after the other.
 struct Files<'a, O> {
-    /// Of all tracks.
+    /// Options of all tracks.
     common: TrackOptions,
     reflectors: &'a Reflectors,
     open: O,

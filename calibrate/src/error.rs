@@ -130,7 +130,7 @@ pub enum FitError {
     SignOpposes {
         /// In how many.
         opposed: usize,
-        /// Of how many runs.
+        /// Number of runs.
         runs: usize,
         /// Which.
         files: String,

@@ -109,7 +109,7 @@ pub struct RunError {
 }
 
 impl RunError {
-    /// Of a value that was neither measured nor stated.
+    /// Error of a value that was neither measured nor stated.
     pub(crate) const NONE: Self = Self {
         measured: f64::NAN,
         predicted: f64::NAN,

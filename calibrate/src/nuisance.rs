@@ -383,7 +383,7 @@ fn summary(
     })
 }
 
-/// Of the weighted Jacobian, each column scaled to length 1.
+/// Condition number of the weighted Jacobian, each column scaled to length 1.
 fn condition(found: &Estimate) -> Option<f64> {
     let roots: Vec<f64> = found.weights.iter().map(|weight| weight.sqrt()).collect();
     let mut weighted = weighted(&found.jacobian, &roots);

@@ -174,7 +174,7 @@ pub struct PoseTrack {
 }
 
 impl PoseTrack {
-    /// Of no recording.
+    /// Track of a run without a recording.
     pub(crate) fn none() -> Self {
         Self {
             samples: Vec::new(),

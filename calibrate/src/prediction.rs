@@ -328,7 +328,7 @@ pub(crate) struct Played {
     pub(crate) period_s: f64,
     /// The way of the joints, as the starting swimmer's servos play the gait.
     pub(crate) path: JointPath,
-    /// The heading by which its cycles were cut, where that is not each model's own.
+    /// The heading by which its cycles were cut, if that is not each model's own.
     pub(crate) cut_by: Option<Harmonics>,
     /// Direction and place of its cycles, if it was tracked.
     pub(crate) view: Option<View>,

@@ -148,7 +148,7 @@ impl Recording {
     }
 }
 
-/// The message of a frame, where it is sound.
+/// The message of a frame, if the frame is valid.
 fn message(bytes: &[u8]) -> Option<Message> {
     let mut decoder = Decoder::new();
     bytes

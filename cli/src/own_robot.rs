@@ -32,7 +32,7 @@ pub(crate) struct PlayedSpeed {
     /// The gait's own period, or the shortest that the robot allows for its table, to the next millisecond.
     pub(crate) period_s: f64,
     pub(crate) speed_m_per_s: f64,
-    /// Of the speed as designed, taken by table, ticks, pulses and servos.
+    /// Share of the designed speed that table, ticks, pulses and servos cost.
     pub(crate) lost_share: f64,
 }
 

@@ -51,7 +51,7 @@ impl Kind {
     /// Writes a drawing, as pixels where that is its kind, or the text of a table.
     ///
     /// # Errors
-    /// As the painting of a drawing and the writing of a file.
+    /// Errors of the painting and of the writing.
     pub(crate) fn write(self, path: &Path, text: &str) -> Outcome {
         match self {
             Self::Png => write_atomically(path, &png(text)?)?,

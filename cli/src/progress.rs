@@ -129,12 +129,12 @@ pub(crate) struct Stages {
 /// Progress over the stages; usual durations in seconds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Pace {
-    /// Of all stages.
+    /// Usual duration of all stages.
     usual: f64,
-    /// Of those that are over, and what they really took.
+    /// Usual duration of the completed stages, and their real duration.
     done: f64,
     took: f64,
-    /// Of the present one.
+    /// Usual duration of the present stage.
     present: f64,
 }
 

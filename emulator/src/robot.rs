@@ -86,7 +86,7 @@ impl EmulatedRobot {
         self
     }
 
-    /// Discards events, for a long run in which nobody takes them.
+    /// Discards events, for a long run in which they are not read.
     #[must_use]
     pub fn without_events(mut self) -> Self {
         self.keeps_events = false;

@@ -15,7 +15,7 @@ pub struct Demand {
     pub peak_power: f64,
     /// The largest of each joint, front and back, against the fluid alone \[N m\].
     pub torque: [f64; 2],
-    /// Of the fastest side link: its tip's speed against its joint, its length and the kinematic viscosity.
+    /// Reynolds number of the fastest side link: its tip's speed against its joint, its length and the kinematic viscosity.
     pub reynolds: f64,
 }
 

@@ -117,7 +117,7 @@ pub fn shortest_period<G: Gait<f64> + ?Sized>(
 /// A curve with what its timing depends on.
 struct Curve {
     cuts: Vec<f64>,
-    /// Of each cell.
+    /// Samples of each cell.
     samples: Vec<[Sample; 4]>,
     /// ∫p: the power length.
     length: f64,

@@ -14,7 +14,7 @@ const TANK: Tank = Tank {
     width: 0.6,
 };
 const MARGIN: f64 = 0.005;
-/// Of plates \[m\].
+/// Clearance of the plates \[m\].
 const CLEARANCE: f64 = 0.0025;
 /// A target less than 2 mm from the wall, beyond the margin, that only the smallest cycles can reach.
 const AT_A_WALL: ([f64; 2], f64) = ([-0.424_193_4, -0.099_542_5], 1.307_874_5);

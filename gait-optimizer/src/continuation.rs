@@ -114,7 +114,7 @@ pub struct Point {
     pub value: f64,
     /// The gait, with its numbers, arcs and certificate.
     pub gait: OptimalGait,
-    /// Of the shooting (efficiency), or λ₄ over L that is left at the end of the quarter (displacement).
+    /// Residual of the shooting (efficiency), or remaining λ₄ over L at the end of the quarter (displacement).
     pub residual: f64,
 }
 
@@ -251,7 +251,7 @@ impl ContinuationProblem {
     }
 }
 
-/// Follows every start from the first value of the parameter to the last, or to where its branch ends, while somebody watches.
+/// Follows every start from the first value of the parameter to the last, or to the end of its branch, with a progress callback.
 ///
 /// # Errors
 /// [`ContinuationError`]: what is wrong with the problem, or that there is no gait to begin with. A branch that ends on the

@@ -37,7 +37,7 @@
 //! | [`closed_forms`] | formulas of the paper's appendix, with its misprints corrected |
 //! | `simple_shapes` | circles and squares over their amplitude |
 //! | `numerics` | bisection, root search, line search (damped steps), reductions that propagate NaN |
-//! | `parallel` | jobs over threads, with somebody who watches |
+//! | `parallel` | jobs over threads, with a progress callback |
 //! | `runge_kutta` | the integrator: order 8, steps that end where an event is |
 //!
 //! ```

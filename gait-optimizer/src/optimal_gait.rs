@@ -18,7 +18,7 @@ pub struct EfficiencyFigures {
     /// Origin of the initial guess: [`Method::word`](crate::Method::word), or the method's name for a [`Direct`](crate::Direct)
     /// gait.
     pub method: &'static str,
-    /// ξ of the curve that was shot from, where it is the result of a direct method of its own.
+    /// ξ of the initial guess, if it is the result of a direct method of its own.
     pub direct_efficiency: Option<f64>,
 }
 

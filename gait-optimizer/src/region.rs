@@ -70,7 +70,7 @@ impl Bound {
         self.edge().map_or(ArcKind::Clearance, |edge| edge.kind)
     }
 
-    /// The edge, where it is straight.
+    /// The edge. Returns `None` for a curved bound.
     pub(crate) fn edge(&self) -> Option<&Edge> {
         match self {
             Self::Straight(edge) => Some(edge),
@@ -263,7 +263,7 @@ impl Region {
         self.bounds().nth(index)
     }
 
-    /// The corner of the forbidden shapes on the same side as a shape, where the bound has one.
+    /// The corner of the forbidden shapes on the same side as a shape, if the bound has one.
     pub(crate) fn corner(&self, phi: &Vector2<f64>) -> Option<Vector2<f64>> {
         let side = if phi.x + phi.y < 0.0 { -1.0 } else { 1.0 };
         let bound = self.clearance.filter(Clearance::has_corner);

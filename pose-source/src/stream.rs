@@ -126,7 +126,7 @@ impl Outlet {
         self.shared.opened.elapsed().as_secs_f64()
     }
 
-    /// Returns `true` if nobody reads any more.
+    /// Returns `true` if the reader has gone.
     pub fn is_stopped(&self) -> bool {
         self.shared.stopped.load(Ordering::SeqCst)
     }

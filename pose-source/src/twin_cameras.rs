@@ -70,7 +70,7 @@ fn body_of(front: [f64; 3], back: [f64; 3]) -> RigidBody {
     }
 }
 
-/// Watches a twin that nobody commands, until the stream is stopped.
+/// Streams the frames of a twin without a host, until the stream is stopped.
 ///
 /// # Errors
 /// [`SourceError::Twin`]: the lengths and drags are no swimmer.

@@ -188,7 +188,7 @@ pub struct CampaignRun {
     pub gait: GaitSpec,
     /// One cycle \[s\].
     pub period_s: f64,
-    /// `front`: which point the front reflector is in this run's file, where it is not as in `[reflectors]`.
+    /// `front`: point of the front reflector in this run's file, if it differs from `[reflectors]`.
     pub front: Option<PointName>,
     /// Known starts of its cycles.
     pub timing: RunTiming,

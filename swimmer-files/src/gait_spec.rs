@@ -104,7 +104,7 @@ impl FromStr for GaitSpec {
     }
 }
 
-/// The shape that was meant, where a word nearly names one; paths have more in them than a word and an angle.
+/// The shape that was probably meant, if a word is similar to its name; paths have more in them than a word and an angle.
 fn meant(shape: &str) -> Option<String> {
     let (word, amplitude) = shape.split_once(':').unwrap_or((shape, "70deg"));
     if !word.chars().all(char::is_alphabetic) || parse_angle(amplitude).is_err() {

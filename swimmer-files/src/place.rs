@@ -64,7 +64,7 @@ impl FileError {
         Self::at(path, line, column, problem)
     }
 
-    /// Line and column, where the error has a place in a file.
+    /// Line and column, if the error has a place in a file.
     pub fn place(&self) -> Option<(usize, usize)> {
         match self {
             Self::Content { line, column, .. } => Some((*line, *column)),

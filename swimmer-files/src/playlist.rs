@@ -61,7 +61,7 @@ pub struct PlaylistStep {
     pub gait: GaitSpec,
     /// One cycle of it.
     pub curve: AnyGait,
-    /// Whom the gait file was made for, where it says so: name and fingerprint.
+    /// Name and fingerprint of the swimmer that the gait was made for, if its file states them.
     pub made_for: Option<(Option<String>, SwimmerHash)>,
     /// Cycles.
     pub cycles: u32,

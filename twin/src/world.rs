@@ -80,7 +80,7 @@ pub struct World {
     seed: u64,
     recordings: u64,
     cameras: Option<Cameras>,
-    /// Frames that wait to be taken; `None` while nobody watches.
+    /// Frames that wait to be taken; `None` without an observer.
     watched: Option<VecDeque<(Duration, Frame)>>,
     cycle_starts: Vec<CycleStart>,
 }

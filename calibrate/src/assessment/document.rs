@@ -55,7 +55,7 @@ pub struct GoodnessPart {
     pub freedom: usize,
     /// Null if there are too few runs, or if they show no scatter.
     pub reduced_chi2_with_systematics: Option<f64>,
-    /// Of what the likeliest r_s and χ leave.
+    /// Signs of the residuals at the likeliest r_s and χ.
     pub signs: Vec<SignTest>,
     /// Run by run.
     pub runs: Vec<RunPart>,

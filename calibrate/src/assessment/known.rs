@@ -8,9 +8,9 @@ use crate::fit::parameter::Parameter;
 use crate::fit::prior::Prior;
 use crate::fit::run_model::RunModel;
 
-/// Lengths of the links \[m\], where the campaign says nothing.
+/// Lengths of the links \[m\], unless the campaign states them.
 const LINKS: f64 = 3e-4;
-/// A servo's gain, joint offsets \[rad\] and the cameras' scale, where the campaign says nothing.
+/// A servo's gain, joint offsets \[rad\] and the cameras' scale, unless the campaign states them.
 const GAIN: f64 = 0.005;
 const OFFSET: f64 = 0.3 * std::f64::consts::PI / 180.0;
 const SCALE: f64 = 0.002;

@@ -15,7 +15,7 @@ use crate::fit::run_values::RunValues;
 use crate::fit::tangent::Tangent;
 use crate::least_squares::{Model as _, weighted};
 
-/// Of how many values one may be left out as unlike the others.
+/// Number of values per value that may be left out as an outlier.
 const VALUES_FOR_ONE: usize = 8;
 /// A prior that contradicts the runs by more standard deviations than this loses weight with the distance, in `DOUBTS` rounds.
 const BELIEVED: f64 = 1.5;

@@ -84,9 +84,9 @@ pub enum LeftOut {
     Jump,
     /// Not the cycle, but the step from it to the next one: how far it is from the run's other steps.
     Step {
-        /// Of the position \[m\].
+        /// Deviation of the position \[m\].
         by_m: f64,
-        /// Of the turn \[rad\].
+        /// Deviation of the turn \[rad\].
         by_rad: f64,
     },
 }

@@ -10,7 +10,7 @@ use crate::fit::outliers::{self, FALSE_ALARM};
 use crate::fit::run_values::RunValues;
 use crate::quantities::QUANTITIES;
 
-/// Of how many values one may be left out.
+/// Number of values per value that may be left out.
 const VALUES_FOR_ONE: usize = 6;
 
 /// A value that the others do not expect.

@@ -42,9 +42,9 @@ impl Variance {
 /// Variances of a run's values from other sources than the scatter between its cycles.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct RunErrors {
-    /// Of the model's values by errors of measured joint angles: they add to the variance of the mean.
+    /// Variance of the model's values by errors of measured joint angles: it adds to the variance of the mean.
     pub(crate) path: [f64; QUANTITIES],
-    /// Of a single cycle by the noise of the cameras: a lower bound of the scatter between cycles.
+    /// Variance of a single cycle by the noise of the cameras: a lower bound of the scatter between cycles.
     pub(crate) noise: [f64; QUANTITIES],
 }
 

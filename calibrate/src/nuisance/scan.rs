@@ -55,7 +55,7 @@ struct Find {
     gain: f64,
 }
 
-/// The warning, where there is reason for one.
+/// The warning, if there is reason for one.
 pub(crate) fn noticed(found: &CampaignFit) -> Option<FitWarning> {
     // Three parameters leave nothing of one run.
     if found.runs.len() < 3 {

@@ -123,7 +123,7 @@ pub(super) struct Followed<'a> {
     pub(super) lost_segments: usize,
     pub(super) lost_rows: usize,
     pub(super) frozen: Frozen,
-    /// The share of rows whose labels contradict the others', where it is too large to say which are right.
+    /// Share of rows whose labels contradict the others', if it is too large to decide which are right.
     pub(super) contested: Option<f64>,
     /// Rows in which a rigid body was tipped over.
     pub(super) tipped: usize,

@@ -93,7 +93,7 @@ fn place_noise(samples: &[&PoseSample]) -> f64 {
 /// Even motion through samples.
 struct EvenMotion {
     velocity: Vector2<f64>,
-    /// Of either coordinate of the velocity.
+    /// Variance of either coordinate of the velocity.
     variance: f64,
     /// The largest distance of a sample from it \[m\].
     worst: f64,

@@ -102,7 +102,7 @@ impl TrackError {
         }
     }
 
-    /// The place, where the error has one.
+    /// The place of the error, if it has one.
     pub fn place(&self) -> Option<&FilePosition> {
         match self {
             Self::Broken { place, .. } => Some(place),

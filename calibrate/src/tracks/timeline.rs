@@ -57,7 +57,7 @@ pub(super) struct Timeline {
 pub(super) struct Timing {
     pub(super) rate_hz: f64,
     pub(super) rows: usize,
-    /// Of all rows where they are kept, else none.
+    /// Frame numbers of all rows, if they are kept; otherwise empty.
     pub(super) frames: Vec<u64>,
     pub(super) times: Vec<f64>,
     pub(super) warnings: Vec<TrackWarning>,

@@ -20,7 +20,7 @@ const LEVEL: f64 = 0.9;
 struct Count {
     /// Intervals of `r_s` and of χ that hold the truth: of the paper's fit, by profile likelihood, by bootstrap.
     inside: [[u64; 2]; 3],
-    /// Warnings of a dead band that nobody knows, and of a run that is unlike the others: all of them are false.
+    /// Warnings of an unknown dead band, and of an outlying run: all of them are false.
     false_alarms: [u64; 2],
 }
 

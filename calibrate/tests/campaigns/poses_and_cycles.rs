@@ -757,7 +757,7 @@ fn rows_that_repeat_are_no_measurements() {
         let reflectors = tank.reflectors(names("x1", "y1"), names("x2", "y2"));
         let answer = |text: &str| calibrate_run(&tank.run_of(text), &reflectors, &file()).unwrap();
         let whole = answer(&tank.table());
-        // A robot at rest repeats its rows where there is no noise, and nobody holds them.
+        // A robot at rest repeats its rows if there is no noise; they are not held.
         assert_eq!(whole.poses.report.frozen, 0);
         assert!(whole.warnings.is_empty(), "{:?}", whole.warnings);
         let result = answer(&held(&tank.table(), 1700, 1000, 20));

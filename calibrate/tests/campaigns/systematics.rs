@@ -158,7 +158,7 @@ fn what_is_known_by_halves_is_within_the_interval() {
     );
 }
 
-/// An oracle knows the model, each value's error and what is known beforehand, all exactly: nobody's intervals are narrower.
+/// An oracle knows the model, each value's error and the priors, all exactly: its intervals are the narrowest.
 #[test]
 #[ignore = "forty campaigns, and an oracle's word on four laboratories"]
 fn intervals_are_hardly_wider_than_an_oracles() {

@@ -30,7 +30,7 @@ fn fitted(campaign: &Campaign, data: &CampaignData) -> CampaignFit {
     found
 }
 
-/// Results of a tracked campaign as somebody would write them down.
+/// Results of a tracked campaign in the form of reported results.
 fn written_down(found: &CampaignFit, runs: std::ops::Range<usize>) -> String {
     let mut text = String::new();
     for run in &found.runs[runs] {

@@ -31,7 +31,7 @@ struct Sample {
     format: &'static str,
     rate_hz: f64,
     unit: Unit,
-    /// Names of front, back and third, where the format has them.
+    /// Names of front, back and third, if the format has them.
     names: [Option<&'static str>; 3],
     /// A place in the tank, x and y, from one in the file.
     tank: fn([f64; 3]) -> [f64; 2],

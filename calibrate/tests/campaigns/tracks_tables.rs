@@ -73,7 +73,7 @@ fn units_in_names_and_pixels() {
     two_points(
         "t [s],x1 [cm],y1 [cm],x2 [cm],y2 [cm]\n0,100,200,300,400\n0.01,150,250,,\n0.02,200,300,400,500\n",
     );
-    // Pixels stay pixels until somebody gives their length: there are no poses from them.
+    // Pixels stay pixels until the user gives their length: there are no poses from them.
     let pixels = "t,x1_px,y1_px\n0,100,200\n0.01,150,250\n";
     let file = read(pixels).unwrap();
     assert_eq!((file.unit, file.unit.metres()), (Unit::Pixel, None));

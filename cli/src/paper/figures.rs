@@ -125,7 +125,7 @@ impl Figure {
     /// The picture.
     ///
     /// # Errors
-    /// As the drawing of a chart.
+    /// Errors of the drawing.
     pub(crate) fn svg(&self) -> Outcome<String> {
         self.picture.clone().map_or_else(|| self.chart.svg(), Ok)
     }
@@ -133,7 +133,7 @@ impl Figure {
     /// Its points as a table, one line each, in the units of the axes.
     ///
     /// # Errors
-    /// As the writing of a table.
+    /// Errors of the writing.
     pub(crate) fn csv(&self) -> Outcome<String> {
         let named = self.names.iter().zip(&self.chart.series);
         let rows = named.flat_map(|(name, series)| {
@@ -156,7 +156,7 @@ impl Figure {
 /// All figures, in the order of the paper.
 ///
 /// # Errors
-/// As the drawing of a map.
+/// Errors of the drawing.
 pub(crate) fn figures(study: &Study) -> Outcome<Vec<Figure>> {
     let mut figures = experiment::experiment(study);
     figures.push(simple_gaits());

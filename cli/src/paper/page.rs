@@ -18,7 +18,7 @@ struct Page<'a> {
 /// Builds the whole page; the same numbers give the same bytes.
 ///
 /// # Errors
-/// As the drawing of a chart.
+/// Errors of the drawing.
 pub(crate) fn page(rows: &[Row], figures: &[Figure]) -> Outcome<String> {
     let drawn = figures.iter().map(|figure| Ok((figure, figure.svg()?)));
     written(&Page {

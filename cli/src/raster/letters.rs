@@ -12,7 +12,7 @@ pub(super) struct Letters {
 }
 
 impl Letters {
-    /// The face, where the program was built with a sound one.
+    /// The font face, if the embedded font is valid.
     pub(super) fn new() -> Option<Self> {
         Some(Self {
             face: Face::parse(dejavu::sans::regular(), 0).ok()?,

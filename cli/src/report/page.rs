@@ -25,7 +25,7 @@ struct Page<'a> {
 /// Builds the whole page; the same report gives the same bytes.
 ///
 /// # Errors
-/// As the drawing of a chart.
+/// Errors of the drawing.
 pub(crate) fn page(report: &Report) -> Outcome<String> {
     let (circles, fitted, start) = (&report.circles, &report.fitted_curve, &report.start_curve);
     written(&Page {
@@ -45,7 +45,7 @@ pub(crate) fn page(report: &Report) -> Outcome<String> {
 /// The text of a filled in template.
 ///
 /// # Errors
-/// As the formatting of a value.
+/// Errors of the formatting.
 pub(crate) fn written(page: &impl Template) -> Outcome<String> {
     page.render()
         .map_err(|error| Failure::Tried(format!("cannot write the page: {error}")))

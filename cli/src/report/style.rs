@@ -178,7 +178,7 @@ pub(crate) fn head((x, y): Point) -> Vec<(i32, i32)> {
 /// Names of curves with a piece of each, one below the other from a corner on; pixels of the page.
 ///
 /// # Errors
-/// As the drawing library says.
+/// Errors of the drawing library.
 pub(crate) fn legend<'a>(
     area: &Area<'_>,
     (left, top): (i32, i32),

@@ -252,7 +252,7 @@ fn a_page_that_vanishes_takes_its_lease_along() {
     play(&mut driver);
     let mut watcher = lab.link(&[]).unwrap();
     watcher.until_wheel(false, false);
-    // Silent, but still connected: nobody feeds the lease in its place.
+    // Silent, but still connected: no other page feeds the lease in its place.
     sleep(Duration::from_secs(1));
     until(&mut driver, StateName::Stopped);
 }

@@ -49,7 +49,7 @@ pub(crate) struct DiagonalContacts {
 }
 
 impl DiagonalContacts {
-    /// Of a quarter that begins in a state.
+    /// Contacts of a quarter that begins in a state.
     pub(super) fn beginning(state: &State) -> Self {
         Self {
             start: [state[0] + state[1]; 2],

@@ -251,7 +251,7 @@ impl<'a> Search<'a> {
         (stayed && on_the_end).then_some(Candidate { quarter, momentum })
     }
 
-    /// The extremal that leaves a family at p, where it ends.
+    /// The extremal that leaves a family at p. Returns `None` if it does not end.
     pub(super) fn miss(
         &self,
         line: QuarterBranch<'_>,

@@ -179,7 +179,7 @@ impl Clearance {
         }
     }
 
-    /// The shape φ₁ = φ₂ > 0 on the bound, where the side links are alike \[rad\].
+    /// The shape φ₁ = φ₂ > 0 on the bound \[rad\]. Returns `None` for unequal side links.
     pub(crate) fn on_diagonal(&self) -> Option<f64> {
         let cos = (self.distance - self.links.middle) / (self.links.front + self.links.back);
         (self.links.front.to_bits() == self.links.back.to_bits() && cos.abs() < 1.0)

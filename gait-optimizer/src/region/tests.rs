@@ -84,7 +84,7 @@ proptest! {
         prop_assert_eq!(region.overstepped(&phi) <= 0.0, overlap < 0.0);
     }
 
-    /// The margin is the distance of the tips from the other link, where the links do not cross.
+    /// The margin is the distance of the tips from the other link, if the links do not cross.
     #[test]
     fn the_margin_is_a_distance(links in links(), x in -PI..PI, y in -PI..PI) {
         let phi = Vector2::new(x, y);

@@ -63,7 +63,7 @@ impl Design for Chains<'_> {
     }
 }
 
-/// The most that one of the swimmers turns in a cycle \[rad\], where that is nothing.
+/// Largest rotation of a swimmer in a cycle \[rad\]. Fails unless it is negligible.
 fn turns_nobody(ensemble: &Ensemble<'_>, cycle: &Cycle) -> Result<f64, RobustError> {
     let turns = ensemble.on_grid().map(|member| {
         let swum = cycle.turned(member.gain).swum(&member.model);

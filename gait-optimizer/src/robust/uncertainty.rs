@@ -187,7 +187,7 @@ impl Uncertainty {
         ]
     }
 
-    /// Correlation, where there are two to correlate.
+    /// Correlation, if both parameters are uncertain.
     fn rho(&self) -> Option<f64> {
         let [radius, log_chi, _] = self.widths();
         let both = is_open(radius) && is_open(log_chi);

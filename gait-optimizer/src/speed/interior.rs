@@ -91,7 +91,7 @@ struct Evaluation {
     /// Residuals of the equalities, and their slopes.
     values: Vec<f64>,
     slopes: Vec<DVector<f64>>,
-    /// Of the Lagrangian without the inequalities.
+    /// Gradient of the Lagrangian without the inequalities.
     gradient: DVector<f64>,
 }
 

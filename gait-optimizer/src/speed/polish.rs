@@ -185,7 +185,7 @@ fn solve(conditions: &Conditions, mut z: DVector<f64>) -> Option<Solution> {
 /// second order hardly anything depends on it, and to third order a saddle lies close to the maximum. Along the weakest shift
 /// the slope is λt + λ't²/2, so the other solution is near t = −2λ/λ'.
 fn beyond_the_fold(conditions: &Conditions, saddle: &Solution) -> Option<Solution> {
-    /// Of the difference quotient.
+    /// Step of the difference quotient.
     const STEP: f64 = 1e-4;
     /// Shifts of corners \[rad\] and times that still are near.
     const NEAR: f64 = 0.1;

@@ -30,7 +30,7 @@ pub(crate) struct Link {
     pub(crate) motion: Motion,
     /// Seconds.
     pub(crate) time: f64,
-    /// Of a singular arc.
+    /// Bends of a singular arc.
     pub(crate) bends: Vec<f64>,
     /// Shapes that a polygon passed on the way.
     pub(crate) between: Vec<Vector2<f64>>,

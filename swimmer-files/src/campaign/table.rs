@@ -1,4 +1,4 @@
-//! A table of results that somebody wrote down, a line a run.
+//! A table of reported results, one line per run.
 
 use std::path::Path;
 

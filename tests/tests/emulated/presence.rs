@@ -12,7 +12,7 @@ const MS: Duration = Duration::from_millis(1);
 
 type Hand = fn(&mut Board, bool) -> Result<(), EmulatorError>;
 
-/// A first key is taken only where somebody is at the robot.
+/// A first key is accepted only with a person at the robot.
 #[test]
 fn jumper_and_button_open_the_bench_window() {
     let ways: [(Image, Hand); 3] = [

@@ -194,7 +194,7 @@ pub(crate) fn events(robot: &mut Robot<Port>) -> Events {
     device.take_events()
 }
 
-/// Lets emulated time pass with nobody at the line.
+/// Lets emulated time pass without a host.
 pub(crate) fn pass(robot: &mut Robot<Port>, time: Duration) {
     robot.port_mut().pass(time);
 }

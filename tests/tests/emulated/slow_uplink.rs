@@ -87,7 +87,7 @@ fn playing(moment: u32) -> (Robot<Slow>, Delivered) {
     (robot, delivered)
 }
 
-/// From a moment to the ramp and to the last pulse, with nobody at the host's end for a minute: all that waited has arrived.
+/// Time from a moment to the ramp and to the last pulse, without a host for a minute: all waiting bytes have arrived.
 fn left_alone(robot: Robot<Slow>, from: Duration) -> (Duration, Duration) {
     let mut port = robot.into_port();
     let mut bytes = [0; 512];

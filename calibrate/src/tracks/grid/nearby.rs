@@ -15,7 +15,7 @@ pub(super) struct Nearby {
     reach: f64,
     /// Places kept in the last row that had any.
     last: Vec<[f64; 3]>,
-    /// Of this row, by point.
+    /// Selection of this row, by point.
     keeps: Vec<bool>,
 }
 

@@ -246,7 +246,7 @@ struct Columns<'r, 'a> {
     ids: Option<&'r [Cell<'a>]>,
     components: &'r [Cell<'a>],
     axes: &'r [Cell<'a>],
-    /// Of Euler angles.
+    /// Order of the axes of Euler angles.
     order: [usize; 3],
 }
 

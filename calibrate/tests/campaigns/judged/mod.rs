@@ -8,7 +8,7 @@ use calibrate::{
 
 use crate::lab::{Faults, Lab, Run};
 
-/// Of all intervals here.
+/// Level of all intervals here.
 pub(crate) const LEVEL: f64 = 0.9;
 
 /// Result of one campaign.

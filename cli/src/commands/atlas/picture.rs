@@ -14,7 +14,7 @@ const SIZE: (i32, i32) = (620, 580);
 /// The picture's text, each gait with its value, the best on top; the second half of the gaits is dashed.
 ///
 /// # Errors
-/// As the drawing of a chart.
+/// Errors of the drawing.
 pub(super) fn svg(title: String, optima: &[(&OptimalGait, String)]) -> Outcome<String> {
     let mut series = Vec::new();
     let mut legend = Vec::new();

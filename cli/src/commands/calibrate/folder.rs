@@ -21,7 +21,7 @@ const REPORT: &str = "report.html";
 /// Fills the folder.
 ///
 /// # Errors
-/// As hashing the inputs and writing.
+/// Errors of hashing the inputs and of writing.
 pub(super) fn write(
     fitted: &FittedCampaign,
     systematics: Option<&Systematics>,

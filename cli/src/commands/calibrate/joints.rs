@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::further::Shown;
 use crate::quantity::Table;
 
-/// Of one run, or the mean of all: front and back.
+/// Servos of one run, or the mean of all runs: front and back.
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct JointsAnswer {
     front: MeasuredServo,
@@ -18,7 +18,7 @@ pub(crate) struct JointsAnswer {
 pub(crate) struct RunJoints {
     /// Share of the samples of cycles that count in which each angle was seen.
     seen: [f64; 2],
-    /// Of samples about the mean course, each \[rad\].
+    /// Scatter of samples about the mean course, each \[rad\].
     scatter_rad: [f64; 2],
     /// Response of the servos to the command; null if the gait does not determine it.
     servos: Option<JointsAnswer>,

@@ -60,7 +60,7 @@ pub(super) enum ToPage {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(tag = "ask", rename_all = "lowercase", deny_unknown_fields)]
 pub(super) enum Ask {
-    /// To drive, if nobody does.
+    /// Request for the wheel, granted if no page drives.
     Drive,
     /// To let others drive.
     Watch,
@@ -173,7 +173,7 @@ struct Pages {
     shared: Arc<AtomicU64>,
 }
 
-/// Runs until `go_on` returns false, or until nobody can come any more. Then the robot is stopped if a page drove it.
+/// Runs until `go_on` returns false, or until no page can connect any more. Then the robot is stopped if a page drove it.
 pub(super) fn run(port: &mut LentPort, inbox: &Inbox, go_on: impl Fn() -> bool) {
     let mut pages = Pages {
         known: BTreeMap::new(),
@@ -263,7 +263,7 @@ impl Pages {
         }
     }
 
-    /// Gives the wheel to a page, if nobody has it.
+    /// Gives the wheel to a page, if no page has it.
     fn drive(&mut self, id: PageId) {
         let driver = *self.driver.get_or_insert(id);
         self.shared.store(driver, Ordering::Relaxed);

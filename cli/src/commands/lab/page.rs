@@ -65,7 +65,7 @@ pub(crate) fn beside(name: &str, swimmer: &SwimmerFile, max_angle: f64, period_s
     )
 }
 
-/// The page of this checkout or this release, where there is one.
+/// The page of this checkout or this release, if there is one.
 pub(crate) fn find() -> Option<PathBuf> {
     let program = env::current_exe().ok()?;
     let folder = program.parent()?;

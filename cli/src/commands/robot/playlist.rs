@@ -163,7 +163,7 @@ fn made_for_it(
     Ok(())
 }
 
-/// Limits, rates and walls; where it all leads.
+/// Checks of limits, rates and walls, and the final pose.
 fn preflight(tables: &[PlaylistTable], player: &Player, room: &Room) -> Outcome<Foretold> {
     let swimmer = &player.swimmer;
     let model = Model::new(swimmer).map_err(|error| {

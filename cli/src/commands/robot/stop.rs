@@ -161,7 +161,7 @@ fn allow(take_over: TakeOver, held_by: &HeldBy, estop: bool) -> Outcome {
     )))
 }
 
-/// Asks the operator, where there is one.
+/// Asks the operator, if standard input is a terminal.
 fn confirmed(question: &str) -> bool {
     if !(io::stdin().is_terminal() && io::stderr().is_terminal()) {
         return false;

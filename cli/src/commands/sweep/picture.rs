@@ -7,7 +7,7 @@ use super::map::Drawn;
 use crate::failure::{Failure, Outcome};
 use crate::report::chart::{Chart, INK, MEASURED, Series};
 
-/// Of the picture in pixels of the page.
+/// Size of the picture in pixels of the page.
 const SIZE: (i32, i32) = (720, 520);
 /// Kinds of gait that get a colour and a name of their own; the rest share one.
 const KINDS: [RGBColor; 9] = [

@@ -41,7 +41,7 @@ struct PlanOutput {
 struct AxisAnswer {
     name: &'static str,
     unit: &'static str,
-    /// Of a grid; 0 in the other designs.
+    /// Number of points of a grid; 0 in the other designs.
     count: u64,
 }
 

@@ -16,7 +16,7 @@ use crate::quantity::Rows;
 pub(super) struct RunAnswer {
     pub(super) plan: String,
     pub(super) shard: String,
-    /// Of the plan.
+    /// Number of designs of the plan.
     pub(super) tasks: u64,
     #[serde(flatten)]
     pub(super) ran: Ran,

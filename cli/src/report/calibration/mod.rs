@@ -20,7 +20,7 @@ pub(crate) struct Calibration<'a> {
     pub(crate) found: &'a CampaignFit,
     pub(crate) evidence: &'a Evidence,
     pub(crate) answer: &'a FitAnswer,
-    /// The estimate with systematics, where there is one.
+    /// The estimate with systematics, if there is one.
     pub(crate) systematics: Option<&'a Systematics>,
     pub(crate) options: EvidenceOptions,
     pub(crate) provenance: &'a Provenance,

@@ -23,7 +23,7 @@ struct Page<'a> {
     ways: Vec<Way>,
     radius_bars: String,
     chi_bars: String,
-    /// Displacement, sway and yaw over the amplitude, where there are circles.
+    /// Displacement, sway and yaw over the amplitude, if there are circles.
     circles: Option<[String; 3]>,
     ridge: String,
     profiles: [String; 2],
@@ -162,7 +162,7 @@ fn main_class(is_recommended: bool) -> &'static str {
     if is_recommended { "main" } else { "" }
 }
 
-/// Of a single cycle there is no deviation.
+/// Three decimals; a dash for the deviation of a single cycle, which does not exist.
 fn three_decimals(value: f64) -> String {
     if value.is_nan() {
         return "–".to_owned();

@@ -12,7 +12,7 @@ pub(crate) type Table = (&'static str, &'static str, String);
 /// The tables. `names` are the runs' files as the campaign names them.
 ///
 /// # Errors
-/// As the writing of a table.
+/// Errors of the writing.
 pub(crate) fn tables(
     found: &CampaignFit,
     evidence: &Evidence,

@@ -25,7 +25,7 @@ const PLANE: (Point, f64) = ((460.0, 64.0), 164.0);
 /// The first cycle as a looping GIF.
 ///
 /// # Errors
-/// As the painting of a drawing.
+/// Errors of the painting.
 pub(crate) fn animation(swimming: &Swimming) -> Outcome<Vec<u8>> {
     let cycle = swimming.a_cycle();
     let moments = swimming.moments.get(..=cycle).unwrap_or_default();

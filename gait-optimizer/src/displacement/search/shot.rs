@@ -69,7 +69,7 @@ impl<'a> Search<'a> {
         quarter.ended().then_some(quarter)
     }
 
-    /// The extremal that a shot becomes on its line, where that ends as it should.
+    /// The extremal of a shot on its line. Returns `None` if it does not end properly.
     pub(super) fn miss_of(&self, shot: &Shot<'_>, line: QuarterBranch<'_>) -> Option<Miss> {
         let quarter = self.onwards(shot, line)?;
         let arcs = lasting(&quarter.legs).fold(0, |arcs: u64, leg| {

@@ -176,7 +176,7 @@ impl Legs {
         })
     }
 
-    /// Of the displacement, against the mean heading.
+    /// Direction of the displacement, against the mean heading.
     pub(crate) fn heading(&self) -> f64 {
         self.end[1].atan2(self.end[0]) - self.mean_theta
     }
@@ -198,7 +198,7 @@ impl Legs {
         worst
     }
 
-    /// Of an arc that is not extreme: the joint whose servo runs at full rate.
+    /// Joint whose servo runs at full rate on an arc that is not extreme.
     pub(crate) fn pace(&self, leg: &Leg) -> usize {
         let mut sums = [0.0; 2];
         for node in leg.panels.iter().flatten() {

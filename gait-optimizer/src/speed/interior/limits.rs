@@ -11,7 +11,7 @@ pub(super) struct Inequality {
     pub(super) value: f64,
     entries: [(usize, f64); 3],
     count: usize,
-    /// Second derivatives in the coordinates of its first entries, where it is not linear.
+    /// Second derivatives in the coordinates of its first entries; `None` for a linear limit.
     pub(super) curved: Option<Matrix2<f64>>,
 }
 

@@ -28,7 +28,7 @@ impl Mul for Pose {
 
 /// Longest step \[rad\].
 const STEP: f64 = 0.15;
-/// Of 15.
+/// √15.
 const ROOT: f64 = 3.872_983_346_207_417;
 
 impl Pose {

@@ -26,7 +26,7 @@ const MOST_STEPS: usize = 300;
 pub(crate) struct Direct {
     /// Swimmers with the gain of their servos: actual over commanded angle. The rotation of the first one vanishes.
     swimmers: Vec<(Model<f64>, f64)>,
-    /// Of their displacements.
+    /// Weights of their displacements.
     weights: Vec<f64>,
     rates: [f64; 2],
     max_angle: f64,

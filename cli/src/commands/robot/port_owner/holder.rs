@@ -146,7 +146,7 @@ fn hear(mut stream: &UnixStream) -> Option<Ask> {
     Some(ask)
 }
 
-/// Listens at `path`, in place of a socket that nobody listens at any more.
+/// Listens at `path`, in place of a socket without a listener.
 fn listen(path: &Path, command: &str) -> io::Result<UnixListener> {
     if !is_held(path) {
         let _ = fs::remove_file(path);

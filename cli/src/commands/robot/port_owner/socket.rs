@@ -52,7 +52,7 @@ pub(super) fn socket_name(port: &str) -> Option<String> {
     Some(format!("{tail}-{number:08x}.sock"))
 }
 
-/// Rights of anybody but the owner.
+/// Rights of all users but the owner.
 const OTHERS: u32 = 0o077;
 
 /// Folder of this user's sockets, which no other user may enter.

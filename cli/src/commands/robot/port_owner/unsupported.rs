@@ -14,7 +14,7 @@ use crate::failure::Outcome;
 pub(in super::super) struct Holder;
 
 impl Holder {
-    /// Tells nobody.
+    /// Holds the port without an announcement.
     pub(in super::super) fn announce(_port: &str, _command: &str) -> Self {
         Self
     }
