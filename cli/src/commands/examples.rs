@@ -3,7 +3,7 @@
 use clap::Command;
 
 /// The words of a command, and what is typed after `swimmer`.
-pub(super) const EXAMPLES: [(&str, &str); 54] = [
+pub(super) const EXAMPLES: [(&str, &str); 60] = [
     ("demo", "demo --swimmer robot -o demo"),
     (
         "simulate",
@@ -67,6 +67,14 @@ pub(super) const EXAMPLES: [(&str, &str); 54] = [
     ("gaits", "gaits"),
     ("completions", "completions bash"),
     ("man", "man -o man1"),
+    ("experiment plan", "experiment plan missing.toml"),
+    (
+        "experiment run",
+        "experiment run missing.toml --port twin --track twin",
+    ),
+    ("experiment status", "experiment status missing.toml"),
+    ("experiment report", "experiment report missing.toml"),
+    ("experiment pack", "experiment pack missing"),
     ("robot info", "robot info --port /tmp/robot"),
     ("robot status", "robot status --port /tmp/robot --json"),
     (
@@ -116,6 +124,7 @@ pub(super) const EXAMPLES: [(&str, &str); 54] = [
     ("tracks", "tracks run.csv"),
     ("optimize", "optimize displacement --swimmer purcell"),
     ("robot", "robot stop --port /tmp/robot"),
+    ("experiment", "experiment plan missing.toml"),
     ("sweep", "sweep plan morphology.toml -o morphology"),
     ("sweep submit", "sweep submit slurm morphology --shards 64"),
 ];

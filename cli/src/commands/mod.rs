@@ -5,6 +5,7 @@ pub(crate) mod calibrate;
 pub(crate) mod certify;
 pub(crate) mod demo;
 mod examples;
+pub(crate) mod experiment;
 pub(crate) mod height_map;
 pub(crate) mod lab;
 pub(crate) mod optimize;
@@ -66,6 +67,8 @@ pub(crate) enum Command {
     Sweep(sweep::Sweep),
     Paper(paper::Paper),
     Plan(plan::Plan),
+    #[command(subcommand)]
+    Experiment(experiment::Experiment),
     Robot(robot::Robot),
     Twin(twin::Twin),
     Lab(lab::Lab),
@@ -121,6 +124,7 @@ pub(crate) fn run(command: Command, output: Output) -> Outcome {
         Command::Paper(paper) => paper.run(output),
         Command::Plan(plan) => plan.run(output),
         Command::Atlas(atlas) => atlas.run(output),
+        Command::Experiment(experiment) => experiment.run(output),
         Command::Robot(robot) => robot.run(output),
         Command::Twin(twin) => twin.run(output),
         Command::Lab(lab) => lab.run(output),

@@ -3,7 +3,7 @@
 mod answer;
 mod playlist;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use forecast::{Errand, Family, PlanError, Servos, Tank, plan};
 use swimmer_files::{AnyGait, GaitFile, SwimmerFile};
@@ -132,25 +132,32 @@ impl Plan {
         let Some(folder) = &self.gaits else {
             return joined(&self.steer, file);
         };
-        let rates = self.steer.rates(file)?;
-        let mut all = Vec::new();
-        for name in ["forward", "left", "turn-left"] {
-            let path = folder.join(format!("{name}.gait"));
-            let gait = GaitFile::load(&path)?;
-            let curve = AnyGait::from_file(&gait)
-                .map_err(|error| Failure::BadInput(format!("{}: {error}", path.display())))?;
-            // As fast as the servos turn.
-            let period = (0..curve.pieces())
-                .flat_map(|piece| {
-                    let end = curve.piece_end(piece);
-                    [end - 1e-9, end + 1e-9].map(|u| curve.at(u.rem_euclid(1.0)).rate)
-                })
-                .map(|rate| (rate.x.abs() / rates[0]).max(rate.y.abs() / rates[1]))
-                .fold(0.0, f64::max);
-            all.push((curve, period));
-        }
-        family_of(all)
+        family_in(folder, self.steer.rates(file)?)
     }
+}
+
+/// The gaits of a folder that `optimize steer -o` wrote, as fast as servos of these rates \[rad/s\] turn.
+///
+/// # Errors
+/// [`Failure::BadInput`] if a gait is missing or cannot be read.
+pub(crate) fn family_in(folder: &Path, rates: [f64; 2]) -> Outcome<Family> {
+    let mut all = Vec::new();
+    for name in ["forward", "left", "turn-left"] {
+        let path = folder.join(format!("{name}.gait"));
+        let gait = GaitFile::load(&path)?;
+        let curve = AnyGait::from_file(&gait)
+            .map_err(|error| Failure::BadInput(format!("{}: {error}", path.display())))?;
+        // As fast as the servos turn.
+        let period = (0..curve.pieces())
+            .flat_map(|piece| {
+                let end = curve.piece_end(piece);
+                [end - 1e-9, end + 1e-9].map(|u| curve.at(u.rem_euclid(1.0)).rate)
+            })
+            .map(|rate| (rate.x.abs() / rates[0]).max(rate.y.abs() / rates[1]))
+            .fold(0.0, f64::max);
+        all.push((curve, period));
+    }
+    family_of(all)
 }
 
 /// The gaits that are found.

@@ -2,6 +2,7 @@
 
 mod access;
 mod answers;
+mod bench;
 mod configure;
 mod dashboard;
 mod find;
@@ -30,8 +31,10 @@ use std::path::PathBuf;
 use host_link::LinkError;
 use swimmer_files::GaitSpec;
 
-use self::access::{Access, Met};
+pub(crate) use self::access::Access;
+use self::access::Met;
 use self::answers::Doing;
+pub(crate) use self::bench::Bench;
 pub(crate) use self::lent::{Heard, LentPort, PortToLend};
 use self::port::Pace;
 use self::port_owner::Ask;

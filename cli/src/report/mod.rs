@@ -3,6 +3,7 @@
 pub(crate) mod calibration;
 pub(crate) mod chart;
 pub(crate) mod drawing;
+pub(crate) mod experiment;
 mod figures;
 pub(crate) mod markup;
 mod page;

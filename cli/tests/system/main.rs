@@ -7,6 +7,7 @@ mod certify;
 mod contract_keys;
 mod demo;
 mod emulated;
+mod experiment;
 mod figures;
 mod flash;
 #[cfg(unix)]

@@ -9,7 +9,9 @@ use host_link::robot::{Callbacks, Halt};
 use host_link::session::SessionConfig;
 use host_link::{LinkError, Port as _, Robot};
 use link_protocol::{Flags, Joint, Telemetry};
+use swimmer_files::SwimmerFile;
 
+use super::bench::{Frames, watched};
 use super::find::{self, Answer};
 use super::key::KeyFile;
 use super::port::{AnyPort, BAUD, Means, NotOpen, Opened, Pace, fresh, open};
@@ -22,7 +24,7 @@ use crate::virtual_robot::EmulatedBoard;
 
 /// Options that name the port, the log and the key.
 #[derive(Debug, clap::Args)]
-pub(super) struct Access {
+pub(crate) struct Access {
     /// Serial port, pseudo-terminal, tcp:HOST:PORT, `twin` or `emulator`; of several (A,B,C) the one where a robot answers. Left out:
     /// the one USB or Bluetooth serial port where a robot answers
     #[arg(long, value_name = "PORT", global = true, value_delimiter = ',')]
@@ -89,7 +91,7 @@ impl Access {
     }
 
     /// The same access with another log.
-    pub(super) fn logging_to(&self, log: PathBuf) -> Self {
+    pub(crate) fn logging_to(&self, log: PathBuf) -> Self {
         Self {
             port: self.port.clone(),
             log: Some(log),
@@ -150,23 +152,11 @@ impl Access {
     /// [`Failure::BadInput`] where no port was named and none or several can be meant, [`Failure::Tried`] when the port
     /// cannot be opened or no robot answers.
     pub(super) fn connect(&self, command: &str, pace: Pace) -> Outcome<Line> {
-        let recorder = self
-            .log
-            .as_deref()
-            .map(Recorder::create)
-            .transpose()?
-            .map(Recorder::told);
+        let recorder = self.recorder()?;
         if let [name] = self.port.as_slice() {
             let means = self.means(pace)?;
             let opened = reach_alone(name, &means)?;
-            let port = traced(opened.port, recorder.as_ref(), &opened.name);
-            // From here on the port is ours: other processes are informed, also while the robot is being greeted.
-            let holder = Holder::announce(&opened.name, command);
-            let callbacks = callbacks(&holder);
-            let robot = Robot::connect_observed(port, means.session, callbacks)?;
-            let mut line = Line::new(opened.name, robot, holder, recorder)?;
-            line.say_what_the_key_is_worth(self.key.is_named())?;
-            return Ok(line);
+            return self.greeted(opened, means.session, recorder, command);
         }
         let (name, robot) = self.find(pace)?;
         let holder = Holder::announce(&name, command);
@@ -179,6 +169,62 @@ impl Access {
         let mut line = Line::new(name, robot, holder, recorder)?;
         line.say_what_the_key_is_worth(self.key.is_named())?;
         Ok(line)
+    }
+
+    /// Greets the robot behind an open port. From here on the port is ours: others learn so, also during the greeting.
+    fn greeted(
+        &self,
+        opened: Opened,
+        session: SessionConfig,
+        recorder: Option<Recorder>,
+        command: &str,
+    ) -> Outcome<Line> {
+        let port = traced(opened.port, recorder.as_ref(), &opened.name);
+        let holder = Holder::announce(&opened.name, command);
+        let callbacks = callbacks(&holder);
+        let robot = Robot::connect_observed(port, session, callbacks)?;
+        let mut line = Line::new(opened.name, robot, holder, recorder)?;
+        line.say_what_the_key_is_worth(self.key.is_named())?;
+        Ok(line)
+    }
+
+    /// Connects to a fresh virtual robot in whose tank `file` is the truth, and keeps the frames of its cameras.
+    ///
+    /// # Errors
+    /// [`Failure::BadInput`] if the port is another, and as [`connect`](Self::connect).
+    pub(super) fn connect_watched(
+        &self,
+        command: &str,
+        file: &SwimmerFile,
+        seed: u64,
+        frames: &Frames,
+    ) -> Outcome<Line> {
+        let carrier = match self.port.as_slice() {
+            [name] => fresh(name).map(|carrier| (name, carrier)),
+            _ => None,
+        };
+        let Some((name, carrier)) = carrier else {
+            return Err(Failure::BadInput(
+                "--track twin sees a fresh virtual robot: use it with --port twin or --port emulator"
+                    .to_owned(),
+            ));
+        };
+        let recorder = self.recorder()?;
+        let opened = Opened {
+            port: watched(carrier.line(file, seed, &self.board)?, frames),
+            name: name.clone(),
+        };
+        self.greeted(opened, self.session()?, recorder, command)
+    }
+
+    /// Returns true if the one port is a fresh virtual robot.
+    pub(super) fn names_a_virtual_robot(&self) -> bool {
+        matches!(self.port.as_slice(), [name] if fresh(name).is_some())
+    }
+
+    fn recorder(&self) -> Outcome<Option<Recorder>> {
+        let recorder = self.log.as_deref().map(Recorder::create).transpose()?;
+        Ok(recorder.map(Recorder::told))
     }
 
     /// Sends a request to the process that holds the robot's port, or takes the port.

@@ -1,0 +1,95 @@
+//! `swimmer experiment report`: measured against predicted, optima against their neighbours.
+
+use std::fmt;
+
+use experiment::unattended::{Comparison, Measure, compare};
+use serde::Serialize;
+use swimmer_files::write_atomically;
+
+use super::Place;
+use super::folder::{Folder, PAGE, REPORT};
+use crate::failure::Outcome;
+use crate::output::{Output, document};
+use crate::report::experiment::page;
+
+/// Compare the measured gaits with the prediction, and each optimum with its neighbours
+///
+/// Writes report.json and report.html (one page, with figures) into the folder of the experiment; also while trials are missing.
+/// Intervals are Student's over the repeats. An optimum is compared with each neighbour within blocks, one-sided, and the p-values
+/// are corrected for the number of comparisons (Holm).
+#[derive(Debug, clap::Args)]
+pub(crate) struct ReportPlan {
+    #[command(flatten)]
+    place: Place,
+}
+
+#[derive(Debug, Serialize)]
+struct ReportOutput<'a> {
+    #[serde(flatten)]
+    comparison: &'a Comparison,
+    report: String,
+}
+
+impl ReportPlan {
+    pub(super) fn run(self, output: Output) -> Outcome {
+        let folder = Folder::of(&self.place)?;
+        let journal = folder.journal()?;
+        let comparison = compare(&folder.plan, &journal);
+        let html = page(&folder.plan, &folder.swimmer.name, &comparison)?;
+        let path = folder.path.join(PAGE);
+        write_atomically(&path, html.as_bytes())?;
+        write_atomically(&folder.path.join(REPORT), document(&comparison).as_bytes())?;
+        output.answer(&ReportOutput {
+            comparison: &comparison,
+            report: path.display().to_string(),
+        });
+        Ok(())
+    }
+}
+
+impl fmt::Display for ReportOutput<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let of = self.comparison;
+        writeln!(f, "{} of {} trials are finished.", of.done, of.runs)?;
+        writeln!(
+            f,
+            "  {:14} {:>12} {:>20}",
+            "gait", "predicted", "measured [mm]"
+        )?;
+        for gait in &of.gaits {
+            let measured = match (gait.measured_m, gait.interval_m) {
+                (Some(mean), Some(half)) => format!("{:.3} ± {:.3}", mean * 1e3, half * 1e3),
+                (Some(mean), None) => format!("{:.3}", mean * 1e3),
+                (None, _) => "–".to_owned(),
+            };
+            writeln!(
+                f,
+                "  {:14} {:>12.3} {measured:>20}",
+                gait.gait,
+                gait.predicted_m * 1e3
+            )?;
+        }
+        for one in &of.comparisons {
+            let (difference, unit) = match one.measure {
+                Measure::Displacement => (one.difference_m, "mm per cycle"),
+                Measure::Speed => (one.difference_m_per_s, "mm/s"),
+            };
+            let difference = difference.map_or_else(
+                || "not measured".to_owned(),
+                |difference| format!("{:+.3} {unit}", difference * 1e3),
+            );
+            let p = one.p.map_or_else(|| "–".to_owned(), |p| format!("{p:.2e}"));
+            let verdict = if one.shown {
+                "beats"
+            } else {
+                "is not shown to beat"
+            };
+            writeln!(
+                f,
+                "  {} {verdict} {}: {difference}, p = {p}",
+                one.better, one.than
+            )?;
+        }
+        write!(f, "The report is {}.", self.report)
+    }
+}

@@ -1,0 +1,249 @@
+//! `swimmer experiment run`: the trials that are left, one after the other.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::PathBuf;
+
+use experiment::Course;
+use experiment::unattended::{Entry, Event, GaitOnRobot, Journal, Plan, Request, Run, RunEnding};
+use forecast::{Planner, Servos};
+use gait_player::GaitTable;
+use pose_source::SourceName;
+use serde::Serialize;
+
+use super::Place;
+use super::folder::{DRIVE, Folder, JournalFile};
+use crate::commands::plan::family_in;
+use crate::commands::robot::{Access, Bench, table_of};
+use crate::failure::{Failure, Outcome};
+use crate::interrupt::Interrupt;
+use crate::output::Output;
+use crate::progress::Progress;
+
+/// Play the trials of a plan that are not finished yet, each from the start pose
+///
+/// For each trial the robot is driven to the start pose by what the cameras see, rests, and plays its gait; the cycles are measured and
+/// the track is recorded. Every event is in the journal before the next begins, so this may be killed at any time: the same command goes
+/// on, and repeats the trial that was under way. A low battery, an e-stop, a lost link or a lost track ends it with exit status 1; the
+/// same command goes on. Ctrl-C stops the robot.
+#[derive(Debug, clap::Args)]
+pub(crate) struct RunPlan {
+    #[command(flatten)]
+    place: Place,
+    #[command(flatten)]
+    access: Access,
+    /// Where the cameras' frames come from: natnet[:HOST[,LOCAL]], tcp:HOST:PORT, -, or twin with a virtual robot
+    #[arg(long, value_name = "SOURCE")]
+    track: SourceName,
+}
+
+#[derive(Debug, Serialize)]
+struct RunOutput {
+    folder: String,
+    runs: usize,
+    done: usize,
+    given_up: usize,
+    /// Trials that this run finished.
+    finished_now: usize,
+    duration_s: f64,
+}
+
+/// Gait ready to be played.
+struct Playable {
+    table: GaitTable,
+    period_us: u32,
+}
+
+impl RunPlan {
+    pub(super) fn run(self, output: Output) -> Outcome {
+        let folder = Folder::of(&self.place)?;
+        let interrupt = Interrupt::install_with_a_robot()?;
+        let (mut file, journal) = JournalFile::open(&folder)?;
+        let left = journal.remaining(&folder.plan).len();
+        if left == 0 {
+            output.answer(&done(&folder, &journal, 0, 0.0));
+            return Ok(());
+        }
+        let number = opened(&journal) + 1;
+        let log = format!("logs/run-{number}.mcap");
+        let log_path = folder.path.join(&log);
+        // A log of this number may be left from a run that was killed before its first line.
+        let _ = std::fs::remove_file(&log_path);
+        let access = self.access.logging_to(log_path);
+        let seed = folder.plan.seed.wrapping_add(number);
+        let mut bench = Bench::open(&access, &self.track, &folder.swimmer, seed, interrupt)?;
+        let servos = bench.servos(&folder.swimmer)?;
+        let (gaits, playable) = gaits(&folder, &servos)?;
+        let planner = planner(&folder, servos)?;
+        file.append(&Entry::Opened {
+            plan: folder.plan.sha256(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            log: Some(log),
+        })?;
+        let spec = &folder.spec;
+        let mut run = Run::new(
+            &folder.plan,
+            &journal,
+            planner.clone(),
+            gaits,
+            spec.start,
+            spec.stop,
+        );
+        let began = bench.now_s();
+        let progress = Progress::of_steps(left as u64);
+        let mut desk = Desk {
+            folder: &folder,
+            file: &mut file,
+            bench: &mut bench,
+            planner: &planner,
+            playable: &playable,
+        };
+        let ending = loop {
+            for event in desk.bench.advance()? {
+                run.event(event);
+            }
+            while let Some(request) = run.poll(desk.bench.now_s()) {
+                if let Some(event) = desk.execute(request)? {
+                    run.event(event);
+                }
+            }
+            if let Some(trial) = run.trial() {
+                progress.doing(format!("trial {}, {}", trial.number, trial.gait));
+            }
+            progress.at(run.finished() as u64);
+            if let Some(ending) = run.ending() {
+                break ending.clone();
+            }
+        };
+        drop(progress);
+        let duration = bench.now_s() - began;
+        let finished = run.finished();
+        let closed = bench.close();
+        match ending {
+            RunEnding::Complete => {
+                let journal = folder.journal()?;
+                output.answer(&done(&folder, &journal, finished, duration));
+                closed
+            }
+            RunEnding::Interrupted(reason) => Err(Failure::Tried(format!(
+                "{reason}; {finished} trials were finished, {} are left: the same command goes on",
+                left.saturating_sub(finished)
+            ))),
+        }
+    }
+}
+
+/// Executor of requests.
+struct Desk<'a> {
+    folder: &'a Folder,
+    file: &'a mut JournalFile,
+    bench: &'a mut Bench,
+    planner: &'a Planner,
+    playable: &'a BTreeMap<String, Playable>,
+}
+
+impl Desk<'_> {
+    fn execute(&mut self, request: Request) -> Outcome<Option<Event>> {
+        match request {
+            Request::Write(entry) => self.file.append(&entry)?,
+            Request::BeginTrack(name) => {
+                let path: PathBuf = self.folder.path.join(name);
+                self.bench.begin_track(&path)?;
+            }
+            Request::EndTrack => self.bench.end_track()?,
+            Request::Stop => return Ok(self.bench.stop()),
+            Request::Drive(step) => {
+                let table = self.planner.checked_table(&step);
+                let table = table.map_err(|error| Failure::tried(&error))?;
+                let name = step.member.word(false);
+                return Ok(self
+                    .bench
+                    .play(name, &table.table, table.cycles, table.period_us));
+            }
+            Request::Play { gait, cycles } => {
+                let Some(playable) = self.playable.get(&gait) else {
+                    return Err(Failure::BadInput(format!("the plan has no gait `{gait}`")));
+                };
+                return Ok(self
+                    .bench
+                    .play(&gait, &playable.table, cycles, playable.period_us));
+            }
+        }
+        Ok(None)
+    }
+}
+
+/// Runs that a journal has seen.
+fn opened(journal: &Journal) -> u64 {
+    let is_opened = |entry: &Entry| matches!(entry, Entry::Opened { .. });
+    let opened = journal
+        .records
+        .iter()
+        .filter(|record| is_opened(&record.entry));
+    opened.count() as u64
+}
+
+fn done(folder: &Folder, journal: &Journal, finished_now: usize, duration_s: f64) -> RunOutput {
+    RunOutput {
+        folder: folder.path.display().to_string(),
+        runs: folder.plan.trials.len(),
+        done: journal.finished().len(),
+        given_up: journal.given_up().len(),
+        finished_now,
+        duration_s,
+    }
+}
+
+fn gaits(
+    folder: &Folder,
+    servos: &Servos,
+) -> Outcome<(BTreeMap<String, GaitOnRobot>, BTreeMap<String, Playable>)> {
+    let model = crate::arguments::model(&folder.swimmer)?;
+    let Plan { gaits, .. } = &folder.plan;
+    let (mut courses, mut playable) = (BTreeMap::new(), BTreeMap::new());
+    for gait in gaits {
+        let curve = folder.curve(gait)?;
+        let table = table_of(&curve).map_err(|error| Failure::tried(&error))?;
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a playable period"
+        )]
+        let period_us = (gait.period_s * 1e6).round() as u32;
+        let on_robot = GaitOnRobot {
+            course: Course::of_cycle(&model, &table, period_us, servos),
+            period_s: gait.period_s,
+        };
+        courses.insert(gait.name.clone(), on_robot);
+        playable.insert(gait.name.clone(), Playable { table, period_us });
+    }
+    Ok((courses, playable))
+}
+
+fn planner(folder: &Folder, servos: Servos) -> Outcome<Planner> {
+    let model = crate::arguments::model(&folder.swimmer)?;
+    let rates = [servos.file.max_rate; 2];
+    let family = family_in(&folder.path.join(DRIVE), rates)?;
+    let (tank, margin) = (folder.spec.tank, folder.spec.margin_m);
+    let planner = Planner::new(model, family, servos, Some(tank), margin);
+    planner.map_err(|error| Failure::tried(&error))
+}
+
+impl fmt::Display for RunOutput {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{} of {} trials are finished in {}",
+            self.done, self.runs, self.folder
+        )?;
+        if self.given_up > 0 {
+            write!(f, ", {} were given up", self.given_up)?;
+        }
+        write!(
+            f,
+            "; {} of them now, in {:.2} h of tank time.",
+            self.finished_now,
+            self.duration_s / 3600.0
+        )
+    }
+}

@@ -1,0 +1,82 @@
+//! `swimmer experiment status`: progress by the journal.
+
+use std::fmt;
+
+use serde::Serialize;
+
+use super::Place;
+use super::folder::Folder;
+use crate::failure::Outcome;
+use crate::output::Output;
+
+/// Report how many trials of an experiment are finished, and why it stands still
+#[derive(Debug, clap::Args)]
+pub(crate) struct Status {
+    #[command(flatten)]
+    place: Place,
+}
+
+#[derive(Debug, Serialize)]
+struct StatusOutput {
+    folder: String,
+    runs: usize,
+    done: usize,
+    given_up: usize,
+    failed_attempts: usize,
+    /// Next trial with its gait; `null` if none is left.
+    next: Option<Next>,
+    /// Reason for which the last run ended early; `null` if it did not.
+    interruption: Option<String>,
+}
+
+#[derive(Debug, Serialize)]
+struct Next {
+    trial: u32,
+    gait: String,
+}
+
+impl Status {
+    pub(super) fn run(self, output: Output) -> Outcome {
+        let folder = Folder::of(&self.place)?;
+        let journal = folder.journal()?;
+        let failures = folder.plan.trials.iter();
+        output.answer(&StatusOutput {
+            folder: folder.path.display().to_string(),
+            runs: folder.plan.trials.len(),
+            done: journal.finished().len(),
+            given_up: journal.given_up().len(),
+            failed_attempts: failures
+                .map(|trial| journal.failures(trial.number) as usize)
+                .sum(),
+            next: journal.remaining(&folder.plan).first().map(|trial| Next {
+                trial: trial.number,
+                gait: trial.gait.clone(),
+            }),
+            interruption: journal.interruption().map(str::to_owned),
+        });
+        Ok(())
+    }
+}
+
+impl fmt::Display for StatusOutput {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} of {} trials are finished", self.done, self.runs)?;
+        if self.given_up > 0 {
+            write!(f, ", {} are given up", self.given_up)?;
+        }
+        if self.failed_attempts > 0 {
+            write!(f, ", {} attempts failed", self.failed_attempts)?;
+        }
+        match &self.next {
+            Some(next) => write!(f, ".\nNext: trial {}, {}.", next.trial, next.gait)?,
+            None => write!(
+                f,
+                ".\nNone is left; `swimmer experiment report` compares them."
+            )?,
+        }
+        if let Some(reason) = &self.interruption {
+            write!(f, "\nThe last run ended early: {reason}.")?;
+        }
+        Ok(())
+    }
+}
