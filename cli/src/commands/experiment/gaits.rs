@@ -193,14 +193,14 @@ impl<'a> Maker<'a> {
             SpecPeriod::Shortest => (of(SLOW_S)?.verdict.min_period * 1e3).ceil() / 1e3,
         };
         let predicted = of(period_s)?;
-        if let Some(refusal) = predicted.refusal() {
-            return Err(format!("the robot would refuse it: {refusal}"));
-        }
         if predicted.verdict.min_period > period_s {
             return Err(format!(
                 "the servos need {:.3} s for a cycle, and the period is {period_s} s",
                 predicted.verdict.min_period
             ));
+        }
+        if let Some(refusal) = predicted.refusal() {
+            return Err(format!("the robot would refuse it: {refusal}"));
         }
         let cycles = self.spec.run_in + spec.cycles;
         self.has_room(&curve, cycles)?;
@@ -264,26 +264,25 @@ impl<'a> Maker<'a> {
 /// As the search.
 pub(super) fn drive(maker: &Maker<'_>) -> Outcome {
     let target = maker.draft.join(super::folder::DRIVE);
-    let from = match &maker.spec.drive {
-        Some(folder) => maker.home.join(folder),
-        None => {
-            let steering = maker.draft.join(".steer");
-            let swimmer = maker.draft.join(super::folder::SWIMMER);
-            let words: [OsString; 8] = [
-                "optimize".into(),
-                "steer".into(),
-                "--playable".into(),
-                "--shape=0,0".into(),
-                "--swimmer".into(),
-                swimmer.into_os_string(),
-                "-o".into(),
-                steering.clone().into_os_string(),
-            ];
-            crate::answer(words).map_err(|refused| {
-                Failure::Tried(format!("gaits to drive with: {}", refused.reason))
-            })?;
-            steering
-        }
+    let from = if let Some(folder) = &maker.spec.drive {
+        maker.home.join(folder)
+    } else {
+        let steering = maker.draft.join(".steer");
+        let swimmer = maker.draft.join(super::folder::SWIMMER);
+        let words: [OsString; 8] = [
+            "optimize".into(),
+            "steer".into(),
+            "--playable".into(),
+            "--shape=0,0".into(),
+            "--swimmer".into(),
+            swimmer.into_os_string(),
+            "-o".into(),
+            steering.clone().into_os_string(),
+        ];
+        crate::answer(words).map_err(|refused| {
+            Failure::Tried(format!("gaits to drive with: {}", refused.reason))
+        })?;
+        steering
     };
     let made = |error: std::io::Error| {
         Failure::Tried(format!(

@@ -1,6 +1,6 @@
 //! `swimmer experiment pack`: one archive that another laboratory or a journal can take.
 
-use std::fmt;
+use std::fmt::{self, Write as _};
 use std::fs::File;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -96,7 +96,8 @@ impl Pack {
                 let mut data = File::open(self.folder.join(name))?;
                 let mut header = header(data.metadata()?.len());
                 tar.append_data(&mut header, format!("{root}/{name}"), &mut data)?;
-                checksums += &format!("{sha256}  {name}\n");
+                // Writing to a String cannot fail.
+                let _ = writeln!(checksums, "{sha256}  {name}");
             }
             for (name, text) in [(PROVENANCE, &provenance), (CHECKSUMS, &checksums)] {
                 let mut header = header(text.len() as u64);

@@ -164,6 +164,10 @@ impl Bench {
     pub(crate) fn advance(&mut self) -> Outcome<Vec<Event>> {
         let news = self.line.beat();
         let mut events = self.poses()?;
+        if self.interrupt.requested() && !self.has_interrupted {
+            self.has_interrupted = true;
+            events.push(Event::Interrupted(Interruption::Operator));
+        }
         match news {
             Ok(Some(telemetry)) => events.extend(self.telemetry(&telemetry)),
             Ok(None) => {}
@@ -177,10 +181,6 @@ impl Bench {
             self.play = None;
             let reason = format!("it did not start a play within {LONGEST_START_S} s");
             events.push(Event::Interrupted(Interruption::Robot(reason)));
-        }
-        if self.interrupt.requested() && !self.has_interrupted {
-            self.has_interrupted = true;
-            events.push(Event::Interrupted(Interruption::Operator));
         }
         Ok(events)
     }
@@ -266,10 +266,7 @@ impl Bench {
         }
     }
 
-    /// Sends a table unless the robot holds it, and plays it. A robot that refuses, or is lost, is an event.
-    ///
-    /// # Errors
-    /// If the operator interrupted.
+    /// Sends a table unless the robot holds it, and plays it. Returns an event if the robot refuses or is lost.
     pub(crate) fn play(
         &mut self,
         name: &str,
@@ -306,7 +303,7 @@ impl Bench {
         Ok(())
     }
 
-    /// Stops the robot.
+    /// Stops the robot. Returns an event if the link fails.
     pub(crate) fn stop(&mut self) -> Option<Event> {
         self.is_stopping = true;
         self.line
