@@ -8,6 +8,7 @@
 mod curve;
 mod follow;
 mod servo;
+mod side;
 
 use nalgebra::Vector2;
 use serde::Serialize;
@@ -21,6 +22,7 @@ use crate::sides::Sides;
 use crate::tracks::TrackFile;
 use curve::AngleCurve;
 pub use servo::combined;
+pub use side::{SideFollower, SideSighting};
 
 /// A value with its standard error.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

@@ -95,11 +95,12 @@ pub use evidence::{Evidence, EvidenceOptions, weigh_evidence};
 pub use fit::{
     CampaignFit, ExcludedRun, Fit, FitOptions, FitWarning, Intervals, RunResidual, c_t_form,
 };
-pub use joints::{Measured, MeasuredJoints, MeasuredServo};
+pub use joints::{Measured, MeasuredJoints, MeasuredServo, SideFollower, SideSighting};
 pub use nuisance::{FurtherFit, NuisanceParameter, fit_further};
 pub use poses::{
-    Drift, FollowReport, FrontRule, Jump, Origin, PoseError, PoseOptions, PoseSample, PoseTrack,
-    PoseWarning, Stretch, poses, usual_reflectors,
+    Drift, End, FollowReport, FollowedPair, FrontRule, Jump, Origin, PairFollower, PoseError,
+    PoseOptions, PoseSample, PoseTrack, PoseWarning, Sighting, Stretch, pose_of_pair, poses,
+    usual_reflectors,
 };
 pub use prediction::{PredictedCycle, PredictionError, joint_path, predict};
 pub use run::{RunResult, calibrate_run};

@@ -31,7 +31,7 @@ use crate::TrackFile;
 use assembly::Assembly;
 pub use error::PoseError;
 use fill::VisibleRow;
-pub use follow::{FollowReport, Stretch};
+pub use follow::{End, FollowReport, FollowedPair, PairFollower, Sighting, Stretch};
 pub use jumps::Jump;
 pub use plane::Plane;
 pub use rest::Drift;
@@ -223,7 +223,7 @@ impl PoseTrack {
             // The points where they are, with each other's places on the link.
             let points = [front, back].map(|at| sample.pose.transform(&Vector2::from(at)));
             let theta = sample.pose.theta;
-            sample.pose = pose_of(&points[1], &points[0], front, back);
+            sample.pose = pose_of_pair(&points[1], &points[0], front, back);
             sample.pose.theta = theta + (sample.pose.theta - theta).rem_euclid(TAU);
         }
     }
@@ -362,7 +362,7 @@ pub fn poses(
 }
 
 /// The link's pose from two points in the plane and their places on the link.
-fn pose_of(
+pub fn pose_of_pair(
     front: &Vector2<f64>,
     back: &Vector2<f64>,
     at_front: [f64; 2],

@@ -1,19 +1,11 @@
 //! A side link's angle in time, from the one point that keeps the reflector's distance from the joint: names are hints, and
 //! what goes on from the last row counts for more.
 
-use nalgebra::Vector2;
 use swimmer_files::{Reflector, Reflectors};
 
-use swimmer_model::wrapped_angle;
-
-use crate::poses::{Origin, PoseSample, PoseTrack};
+use super::side::{SideFollower, SideSighting};
+use crate::poses::{End, Origin, PoseTrack};
 use crate::tracks::TrackFile;
-
-/// Largest error of a point's distance to the joint, as a share of the reflector's.
-const DISTANCE: f64 = 0.1;
-/// Largest turn from one row to the next \[rad\], and how fast a link may turn over a gap \[rad/s\].
-const STEP: f64 = 0.3;
-const SPEED: f64 = 6.0;
 
 /// One side link: the position of its joint along the middle link, in half lengths of it, and the sign of its angle.
 struct Side<'a> {
@@ -49,19 +41,28 @@ impl Side<'_> {
             all().collect()
         };
         let named: Vec<usize> = self.named(track, &pool);
+        let end = if self.end > 0.0 {
+            End::Front
+        } else {
+            End::Back
+        };
+        let mut follower = SideFollower::new(end, half, self.reflector.at, !named.is_empty());
         let mut out: Vec<(f64, f64)> = Vec::with_capacity(poses.samples.len());
         for sample in poses.samples.iter().filter(|s| s.origin == Origin::Seen) {
             let Some(row) = row_at(track, sample.time_s) else {
                 continue;
             };
-            let seen = pool.iter().filter_map(|point| {
-                let place = track.points.get(*point)?.position(row)?;
-                let angle = self.angle(sample, poses.plane.project(&place), half)?;
-                Some((*point, angle))
-            });
-            let seen: Vec<(usize, f64)> = seen.collect();
-            let last = out.last().copied();
-            if let Some(angle) = next(&seen, &named, sample.time_s, last) {
+            let seen: Vec<SideSighting> = pool
+                .iter()
+                .filter_map(|point| {
+                    let place = track.points.get(*point)?.position(row)?;
+                    Some(SideSighting {
+                        named: named.contains(point),
+                        place: poses.plane.project(&place),
+                    })
+                })
+                .collect();
+            if let Some(angle) = follower.push(sample.time_s, &sample.pose, &seen) {
                 out.push((sample.time_s, angle));
             }
         }
@@ -76,48 +77,6 @@ impl Side<'_> {
         };
         pool.iter().filter(is).copied().collect()
     }
-
-    /// The link's angle by a point at this place, if it is as far from the joint as the reflector.
-    fn angle(&self, sample: &PoseSample, place: Vector2<f64>, half: f64) -> Option<f64> {
-        let pose = &sample.pose;
-        let from = place - pose.transform(&Vector2::new(self.end * half, 0.0));
-        let [along, across] = self.reflector.at;
-        let reach = along.hypot(across);
-        if (from.norm() - reach).abs() > DISTANCE * reach {
-            return None;
-        }
-        let outwards = from.y.atan2(from.x) - across.atan2(along);
-        Some(wrapped_angle(if self.end > 0.0 {
-            outwards - pose.theta
-        } else {
-            pose.theta + std::f64::consts::PI - outwards
-        }))
-    }
-}
-
-/// Angle that continues the last one; without a last one the named point's, else the straightest.
-fn next(
-    seen: &[(usize, f64)],
-    named: &[usize],
-    time: f64,
-    last: Option<(f64, f64)>,
-) -> Option<f64> {
-    let by_name = || seen.iter().find(|(point, _)| named.contains(point));
-    let Some((then, angle)) = last else {
-        let straightest = || seen.iter().min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
-        let first = by_name().or_else(|| straightest().filter(|_| named.is_empty()))?;
-        return Some(first.1);
-    };
-    let reach = STEP.max(SPEED * (time - then));
-    let off = |(_, other): &&(usize, f64)| wrapped_angle(other - angle).abs();
-    let nearest = seen.iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;
-    // Over a long gap everything is near: the name decides.
-    let found = if reach > 1.0 {
-        by_name().unwrap_or(nearest)
-    } else {
-        nearest
-    };
-    (off(&found) < reach).then(|| angle + wrapped_angle(found.1 - angle))
 }
 
 fn row_at(track: &TrackFile, time_s: f64) -> Option<usize> {

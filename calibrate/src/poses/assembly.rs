@@ -6,7 +6,7 @@ use swimmer_model::{Pose, wrapped_angle};
 
 use super::fill::{Bridge, TAIL, VisibleRow};
 use super::follow::Followed;
-use super::{Origin, Plane, PoseSample, pose_of};
+use super::{Origin, Plane, PoseSample, pose_of_pair};
 use crate::TrackFile;
 
 /// Poses in time from what was seen, and from cubics over gaps.
@@ -54,7 +54,7 @@ impl Assembly<'_> {
     }
 
     fn pose(&self, front: &Vector2<f64>, back: &Vector2<f64>) -> Pose<f64> {
-        pose_of(
+        pose_of_pair(
             front,
             back,
             self.reflectors.front.at,

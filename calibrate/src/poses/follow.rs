@@ -9,8 +9,11 @@
 
 mod frame_jump;
 mod identity;
+mod incremental;
+mod pairs;
 mod rigid;
 mod search;
+mod walk;
 
 use nalgebra::{Vector2, Vector3};
 use swimmer_files::{PointName, Reflectors};
@@ -18,9 +21,10 @@ use swimmer_files::{PointName, Reflectors};
 use super::frozen::{Frozen, take_frozen};
 use super::{PoseError, PoseOptions};
 use crate::TrackFile;
-use frame_jump::{FrameJump, MOVED};
 use identity::Settled;
-use search::{Candidate, REACH, Search, prepare};
+pub use incremental::{End, FollowedPair, PairFollower, Sighting};
+use search::{Search, prepare};
+use walk::walk;
 
 /// Report on following the reflectors.
 #[derive(Debug, Clone, PartialEq)]
@@ -102,6 +106,8 @@ impl Stretch {
     }
 }
 
+/// A row in which both reflectors were found.
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Row {
     pub(super) index: usize,
     pub(super) front: Vector3<f64>,
@@ -129,38 +135,8 @@ pub(super) struct Followed<'a> {
     pub(super) tipped: usize,
 }
 
-/// Smoothing time of the velocity \[s\].
-const SMOOTHING_S: f64 = 0.2;
-/// Longest gap before a speed is known \[s\].
-const FIRST_GAP_S: f64 = 1.0;
 /// Tolerance of a lone point about a cubic, over the reflectors' distance: the bend of a fast gait in 0.1 s.
 const NEAR: f64 = 0.05;
-
-/// Place and velocity of a reflector.
-#[derive(Clone, Copy)]
-struct Motion {
-    place: Vector3<f64>,
-    velocity: Vector3<f64>,
-}
-
-impl Motion {
-    fn new(place: Vector3<f64>) -> Self {
-        Self {
-            place,
-            velocity: Vector3::zeros(),
-        }
-    }
-
-    fn moved(self, place: Vector3<f64>, dt: f64) -> Self {
-        let weight = (dt / SMOOTHING_S).min(1.0);
-        let velocity = self.velocity + ((place - self.place) / dt - self.velocity) * weight;
-        Self { place, velocity }
-    }
-
-    fn after(self, dt: f64) -> Vector3<f64> {
-        self.place + self.velocity * dt
-    }
-}
 
 impl Followed<'_> {
     /// The measured point of a row that is nearest to where a reflector ought to be, if it is near enough to be it.
@@ -172,7 +148,12 @@ impl Followed<'_> {
     ) -> Option<Vector2<f64>> {
         let mut candidates = Vec::new();
         self.search.candidates(row, &mut candidates);
-        let reach = self.search.after_gap.1.max(NEAR * self.search.distance);
+        let reach = self
+            .search
+            .pairs
+            .after_gap
+            .1
+            .max(NEAR * self.search.pairs.distance);
         candidates
             .iter()
             .map(|(_, at)| project(at))
@@ -204,13 +185,15 @@ pub(super) fn follow<'a>(
     let mut search = prepare(track, reflectors, expected_m, options)?;
     // The first pass determines the distance, and its scatter and that of predictions.
     let rows = walk(&search).0;
-    search.learn(&rows);
+    let distances = rows.iter().map(|row| (row.front - row.back).norm());
+    let misses = rows.iter().filter_map(|row| row.miss);
+    search.pairs.learn(distances, misses);
     drop(rows);
     let (rows, starts) = walk(&search);
     if rows.is_empty() {
         return Err(PoseError::NoPair {
             expected_m,
-            tolerance_m: search.tolerance,
+            tolerance_m: search.pairs.tolerance,
             frames: track.frames(),
         });
     }
@@ -234,156 +217,6 @@ pub(super) fn follow<'a>(
     }
     followed.report.ghosts = Stretch::of(crowded.into_iter());
     Ok(followed)
-}
-
-/// State of the previous row.
-struct State {
-    time: f64,
-    front: Motion,
-    back: Motion,
-}
-
-/// Through all rows; returns them with the index in them at which each segment starts.
-fn walk(search: &Search<'_>) -> (Vec<Row>, Vec<usize>) {
-    let (mut rows, mut starts): (Vec<Row>, Vec<usize>) = (Vec::new(), Vec::new());
-    let mut state: Option<State> = None;
-    let mut top_speed: f64 = 0.0;
-    let mut candidates = Vec::new();
-    // Points of the row before that are no reflectors.
-    let mut others: Vec<Vector3<f64>> = Vec::new();
-    let mut jump: Option<FrameJump> = None;
-    for (row, time) in search.track.times.iter().copied().enumerate() {
-        search.candidates(row, &mut candidates);
-        let longest = if top_speed > 0.0 {
-            search.distance / (2.0 * top_speed)
-        } else {
-            FIRST_GAP_S
-        };
-        state = state.filter(|s| time - s.time <= longest.max(2.5 / search.track.rate_hz));
-        let found = match &state {
-            None => search.begin(&candidates),
-            Some(state) => next(search, state, time, top_speed, &candidates, &others),
-        };
-        jump = match (&state, &found) {
-            (Some(_), None) => FrameJump::seen(jump, search, row, top_speed, &candidates),
-            _ => None,
-        };
-        if let Some(there) = jump.take_if(|there| there.rows.len() > MOVED) {
-            // The frame jumped: a new segment, from the first of these rows on.
-            starts.push(rows.len());
-            rows.extend(there.rows);
-            state = Some(there.state);
-            others.clear();
-            continue;
-        }
-        let Some((front, back)) = found else {
-            // Another point remains one; a new point may still be a reflector.
-            match &state {
-                None => others.clear(),
-                Some(state) => {
-                    let (f, b) = state.predict(time);
-                    let still = |at: &Vector3<f64>| is_other(at, &f, &b, &others);
-                    others = candidates.iter().map(|c| c.1).filter(still).collect();
-                }
-            }
-            continue;
-        };
-        others.clear();
-        let is_chosen = |point: usize| point == front.0 || point == back.0;
-        others.extend(candidates.iter().filter(|c| !is_chosen(c.0)).map(|c| c.1));
-        let miss = state.as_ref().map(|state| {
-            let (f, b) = state.predict(time);
-            (front.1 - f).norm().hypot((back.1 - b).norm())
-        });
-        state = Some(
-            if let Some(State {
-                time: then,
-                front: f,
-                back: b,
-            }) = state
-            {
-                let (f, b) = (f.moved(front.1, time - then), b.moved(back.1, time - then));
-                // Noise alone is fast from one frame to the next; the smoothed velocity after some time is not.
-                let old_enough = starts.last().is_some_and(|start| rows.len() - start > 50);
-                if old_enough {
-                    top_speed = top_speed.max(f.velocity.norm()).max(b.velocity.norm());
-                }
-                State {
-                    time,
-                    front: f,
-                    back: b,
-                }
-            } else {
-                starts.push(rows.len());
-                State {
-                    time,
-                    front: Motion::new(front.1),
-                    back: Motion::new(back.1),
-                }
-            },
-        );
-        rows.push(Row {
-            index: row,
-            front: front.1,
-            back: back.1,
-            labels: search.labels(front.0, back.0),
-            begins: miss.is_none(),
-            miss,
-        });
-    }
-    (rows, starts)
-}
-
-impl State {
-    fn predict(&self, time: f64) -> (Vector3<f64>, Vector3<f64>) {
-        let dt = time - self.time;
-        (self.front.after(dt), self.back.after(dt))
-    }
-}
-
-/// Returns `true` if a candidate is nearer to a point that was no reflector than to the reflectors' predicted positions.
-fn is_other(
-    at: &Vector3<f64>,
-    front: &Vector3<f64>,
-    back: &Vector3<f64>,
-    others: &[Vector3<f64>],
-) -> bool {
-    let own = (at - front).norm_squared().min((at - back).norm_squared());
-    others.iter().any(|other| (at - other).norm_squared() < own)
-}
-
-/// The pair that continues a known state.
-fn next(
-    search: &Search<'_>,
-    state: &State,
-    time: f64,
-    top_speed: f64,
-    candidates: &[Candidate],
-    others: &[Vector3<f64>],
-) -> Option<(Candidate, Candidate)> {
-    let (front, back) = state.predict(time);
-    let blind = (time - state.time - 1.5 / search.track.rate_hz).max(0.0);
-    let (tolerance, reach) = if blind > 0.0 {
-        // Beyond the usual step from frame to frame, what a turn at top speed could add.
-        let speed = if top_speed > 0.0 {
-            top_speed
-        } else {
-            search.distance / FIRST_GAP_S
-        };
-        let reach = search.after_gap.1 + 2.0 * speed * blind;
-        (search.after_gap.0, reach.min(REACH.1 * search.distance))
-    } else {
-        (search.tolerance, REACH.0 * search.distance)
-    };
-    let own: Vec<Candidate> = candidates
-        .iter()
-        .filter(|c| !is_other(&c.1, &front, &back, others))
-        .copied()
-        .collect();
-    search.best(&own, tolerance, |f, b| {
-        let miss = (f.1 - front).norm_squared() + (b.1 - back).norm_squared();
-        (miss < reach * reach).then_some(miss)
-    })
 }
 
 /// Counts the followed rows of this number of segments.

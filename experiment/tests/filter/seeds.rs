@@ -1,0 +1,146 @@
+//! Error bounds over many seeds, measured against the truth at the moment of use.
+
+use experiment::{FilterEvent, FilterOptions, PoseFilter};
+use swimmer_files::{PointName, Reflector, Reflectors};
+use swimmer_model::{Pose, wrapped_angle};
+
+use crate::cameras::{Faults, RATE_HZ, REACH_M, SIDE_M, filmed, swum};
+
+pub(crate) fn filter(latency_s: f64) -> PoseFilter {
+    let reflector = |name: &str, along| Reflector {
+        point: PointName::Named(name.to_owned()),
+        at: [along, 0.0],
+    };
+    let reflectors = Reflectors {
+        front: reflector("Front", REACH_M),
+        back: reflector("Back", -REACH_M),
+        // From the joint outwards.
+        sides: Some([reflector("Tip", SIDE_M), reflector("Tail", SIDE_M)]),
+    };
+    let options = FilterOptions {
+        latency_s,
+        ..FilterOptions::new(reflectors, 2.0 * REACH_M)
+    };
+    PoseFilter::new(options).unwrap()
+}
+
+/// Errors at the times at which frames are received, extrapolated over the latency.
+#[derive(Debug, Default)]
+pub(crate) struct Errors {
+    pub(crate) position_m: Vec<f64>,
+    pub(crate) heading_rad: Vec<f64>,
+    /// Squared errors over the stated variances.
+    position_ratio: f64,
+    heading_ratio: f64,
+    pub(crate) without: usize,
+    pub(crate) events: Vec<FilterEvent>,
+}
+
+impl Errors {
+    /// Filters frames, and compares every pose with the truth then.
+    pub(crate) fn of(poses: &[Pose<f64>], faults: Faults, seed: u64) -> Self {
+        let mut filter = filter(faults.latency_s);
+        let mut errors = Self::default();
+        for frame in filmed(poses, faults, seed) {
+            errors.events.extend(filter.push(&frame));
+            let host_s = frame.received_s;
+            let Some(truth) = truth_at(poses, host_s) else {
+                continue;
+            };
+            // The first second is for the filter to settle.
+            if host_s < 1.0 {
+                continue;
+            }
+            let Some(pose) = filter.pose_now(host_s) else {
+                errors.without += 1;
+                continue;
+            };
+            let off = (pose.x_m - truth.x).hypot(pose.y_m - truth.y);
+            let turned = wrapped_angle(pose.heading_rad - truth.theta).abs();
+            errors.position_ratio += (off / pose.sigma_position_m).powi(2) / 2.0;
+            errors.heading_ratio += (turned / pose.sigma_heading_rad).powi(2);
+            errors.position_m.push(off);
+            errors.heading_rad.push(turned);
+        }
+        errors
+    }
+}
+
+fn truth_at(poses: &[Pose<f64>], host_s: f64) -> Option<Pose<f64>> {
+    let at = host_s * RATE_HZ;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let before = at.floor() as usize;
+    let (a, b) = (poses.get(before)?, poses.get(before + 1)?);
+    let part = at - before as f64;
+    Some(Pose::new(
+        a.x + part * (b.x - a.x),
+        a.y + part * (b.y - a.y),
+        a.theta + part * wrapped_angle(b.theta - a.theta),
+    ))
+}
+
+fn quantile(values: &mut [f64], share: f64) -> f64 {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let index = (share * (values.len() - 1) as f64) as usize;
+    *values.select_nth_unstable_by(index, f64::total_cmp).1
+}
+
+/// Bounds of the error: 95 %, 99.9 % and the largest, in mm and degrees.
+struct Bounds {
+    position_mm: [f64; 3],
+    heading_deg: [f64; 3],
+}
+
+#[track_caller]
+fn check(name: &str, faults: Faults, seeds: u64, bounds: &Bounds) {
+    let mut all = Errors::default();
+    for seed in 0..seeds {
+        let poses = swum(2000, 6.0, seed);
+        let errors = Errors::of(&poses, faults, seed);
+        assert_eq!(errors.events, [FilterEvent::Found], "seed {seed}");
+        all.position_m.extend(errors.position_m);
+        all.heading_rad.extend(errors.heading_rad);
+        all.position_ratio += errors.position_ratio;
+        all.heading_ratio += errors.heading_ratio;
+        all.without += errors.without;
+    }
+    let count = all.position_m.len() as f64;
+    let ratios = [all.position_ratio, all.heading_ratio].map(|sum| sum / count);
+    let shares = [0.95, 0.999, 1.0];
+    let position = shares.map(|share| 1e3 * quantile(&mut all.position_m, share));
+    let heading = shares.map(|share| quantile(&mut all.heading_rad, share).to_degrees());
+    println!(
+        "{name}: {count} poses, position {position:.2?} mm, heading {heading:.2?}°, error/stated {ratios:.2?}"
+    );
+    assert_eq!(all.without, 0);
+    for (measured, bound) in position.iter().zip(bounds.position_mm) {
+        assert!(*measured <= bound, "position {position:?}");
+    }
+    for (measured, bound) in heading.iter().zip(bounds.heading_deg) {
+        assert!(*measured <= bound, "heading {heading:?}");
+    }
+    // Stated deviations are neither boasts nor excuses.
+    assert!(
+        ratios.iter().all(|ratio| (0.1..2.0).contains(ratio)),
+        "{ratios:?}"
+    );
+}
+
+#[test]
+fn good_cameras() {
+    let bounds = Bounds {
+        position_mm: [1.0, 1.5, 2.0],
+        heading_deg: [1.0, 1.5, 2.0],
+    };
+    check("good cameras", Faults::NONE, 10, &bounds);
+}
+
+/// 30 % blank frames in bursts, swaps, ghosts, relabelling, 80 ms latency with jitter.
+#[test]
+fn bad_cameras() {
+    let bounds = Bounds {
+        position_mm: [3.0, 8.0, 15.0],
+        heading_deg: [3.0, 8.0, 15.0],
+    };
+    check("bad cameras", Faults::ALL, 40, &bounds);
+}
