@@ -38,14 +38,14 @@ const JUMP_M: f64 = 0.02;
 const JUMP_SIGMAS: f64 = 6.0;
 /// A lone point within so many standard deviations of where a reflector should be is the reflector.
 const LONE_SIGMAS: f64 = 4.0;
-/// Least noise of a point \[m\]: what a rounded stream still has.
+/// Least noise of a point \[m\]: rounding of a stream.
 const LEAST_NOISE_M: f64 = 2e-5;
 /// Weight of a frame in the running estimate of the noise.
 const NOISE_WEIGHT: f64 = 0.01;
 /// Heading and position swing by so much within a cycle: radians, and shares of the reflectors' distance.
 const SWING: (f64, f64) = (0.5, 0.4);
 
-/// How to filter.
+/// Options of the pose filter.
 #[derive(Debug, Clone)]
 pub struct FilterOptions {
     /// Names of the reflectors, and their places on the middle link.
@@ -58,7 +58,7 @@ pub struct FilterOptions {
     pub latency_s: f64,
     /// Standard deviation of a measured coordinate \[m\], at the beginning; later it is estimated.
     pub noise_m: f64,
-    /// Without a reflector for so long the robot is lost \[s\].
+    /// Longest time without a reflector before the robot is lost \[s\].
     pub longest_blank_s: f64,
 }
 
@@ -76,7 +76,7 @@ impl FilterOptions {
     }
 }
 
-/// Something that a caller must know.
+/// Change of the tracking state that a caller must handle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FilterEvent {
     /// The robot was found, for the first time or after it was lost.
@@ -143,7 +143,7 @@ impl Estimate {
     }
 }
 
-/// A pose that jumped and is not yet believed.
+/// A pose that jumped and is not yet confirmed.
 #[derive(Debug, Clone, Copy)]
 struct Doubtful {
     order: Order,
@@ -371,7 +371,7 @@ impl PoseFilter {
             return self.find(time_s, pair);
         };
         if pair.begins {
-            // What was doubtful is gone, and what begins is doubtful if it is not where it should be.
+            // A new stretch is doubtful if it is away from the prediction.
             self.doubtful = None;
             let order = self.order_after_gap(&estimate, pair);
             if self.jumps(&estimate, pair, order) {

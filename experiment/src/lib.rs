@@ -3,11 +3,13 @@
 //! Sans-IO: poses, events and times in, reports and requests out. Nothing here opens a socket, reads a clock or starts a thread.
 //!
 //! ```text
-//!  poses ──► clock match ──► monitor ──► reports and departures
-//!    │                          │
-//!    └──────► controller ◄──────┘ ──► requests: play one cycle, stop
+//!  frames ──► filter ──► poses ──► clock match ──► monitor ──► reports and departures
+//!                          │                          │
+//!                          └──────► controller ◄──────┘ ──► requests: play one cycle, stop
 //! ```
 //!
+//! - [`PoseFilter`]: poses of the middle link from frames of the cameras, through swaps, ghosts and blanks, extrapolated over the
+//!   latency ([`FilterEvent`]: found, lost, jumped).
 //! - [`Pose`]: tracked pose of the middle link, with its time and its standard deviations.
 //! - [`Course`]: predicted shapes and poses of a play or of a cycle over time.
 //! - [`match_clocks`]: offset between the clocks of robot and cameras, from arrival times ([`Arrivals`]) and the oscillation within
@@ -23,6 +25,7 @@
 mod clock;
 mod controller;
 mod course;
+mod filter;
 mod fit;
 mod learning;
 mod monitor;
@@ -32,5 +35,6 @@ pub mod unattended;
 pub use clock::{Arrivals, ClockMatch, match_clocks};
 pub use controller::{Controller, Ending, Goal, Options, Request, Target};
 pub use course::Course;
+pub use filter::{FilterCounts, FilterEvent, FilterOptions, JointAngle, PoseFilter};
 pub use monitor::{CycleReport, Departure, Likeness, MeasuredMotion, Monitor};
 pub use pose::Pose;

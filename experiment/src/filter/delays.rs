@@ -1,4 +1,4 @@
-//! Camera clock and host clock: the quickest of recent frames tells the offset, and jitter only ever adds to it.
+//! Offset between camera clock and host clock, from the quickest of recent frames: jitter only adds to a delay.
 
 use std::collections::VecDeque;
 

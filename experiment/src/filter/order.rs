@@ -1,11 +1,9 @@
-//! Which of two followed points is the front: names vote, and the vote is closed once it is clear.
+//! Order of the two followed points, front and back: a vote of the names, closed once it is clear.
 
-/// Frames in which names must agree before the order is settled,
+/// Net votes for the order that settle it.
 const SETTLED: f64 = 50.0;
-/// and the share of all votes that they must be.
-const MAJORITY: f64 = 0.75;
-/// Net votes against the order that turn it round before it is settled.
-const TURNED: f64 = 10.0;
+/// Net votes against the order that turn it round before it is settled: more than a burst of swapped names has.
+const TURNED: f64 = 40.0;
 
 /// The order of a stretch in which both points were followed without an ambiguous gap.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,7 +43,7 @@ impl Order {
         self.settled
     }
 
-    /// Takes the names of a frame: whether they agree with the follower's order. Returns `true` if the order turns round.
+    /// Takes a frame's vote: `true` if its names agree with the follower's order. Returns `true` if the order turns round.
     pub(super) fn vote(&mut self, names: Option<bool>) -> bool {
         let Some(names) = names.filter(|_| !self.settled) else {
             return false;
@@ -60,8 +58,7 @@ impl Order {
             (self.agree, self.contradict) = (self.contradict, self.agree);
             return true;
         }
-        let all = self.agree + self.contradict;
-        self.settled = self.agree >= SETTLED && self.agree >= MAJORITY * all;
+        self.settled = self.agree - self.contradict >= SETTLED;
         false
     }
 }
@@ -75,7 +72,7 @@ mod tests {
         let mut order = Order::open();
         // Names were swapped in the first frame, so every later one contradicts.
         let mut turns = (0..200).filter(|_| order.vote(Some(false)));
-        assert_eq!((turns.next(), turns.next()), (Some(9), None));
+        assert_eq!((turns.next(), turns.next()), (Some(39), None));
         drop(turns);
         assert!(order.exchanged && order.is_settled());
         // A swap for good changes nothing any more.
