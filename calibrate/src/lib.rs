@@ -106,7 +106,7 @@ pub use prediction::{PredictedCycle, PredictionError, joint_path, predict};
 pub use run::{RunResult, calibrate_run};
 pub use tracks::{
     PointKind, PointPresence, TrackError, TrackFile, TrackFormat, TrackOptions, TrackPoint,
-    TrackProblem, TrackSurvey, TrackWarning, Unit, UsedPoints, read_tracks, read_tracks_with,
-    survey_tracks,
+    TrackProblem, TrackSurvey, TrackWarning, Unit, UsedPoints, is_called, read_tracks,
+    read_tracks_with, survey_tracks,
 };
 pub use wrong_gait::{OtherGait, amplitude_by_sway, other_gaits};

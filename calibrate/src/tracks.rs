@@ -68,7 +68,7 @@ use swimmer_files::Axes;
 
 pub use error::{FilePosition, TrackError, TrackProblem};
 pub use options::{TrackOptions, UsedPoints};
-pub use point::{PointKind, TrackPoint};
+pub use point::{PointKind, TrackPoint, is_called};
 pub use survey::{PointPresence, TrackSurvey};
 pub use unit::Unit;
 pub use warning::TrackWarning;

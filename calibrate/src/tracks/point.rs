@@ -140,8 +140,7 @@ impl TrackPoint {
 
     /// Returns `true` if the point has this name: its own, or the part after an asset's name and a colon.
     pub(crate) fn is_called(&self, name: &str) -> bool {
-        let asset = self.name.rsplit_once(':');
-        self.name == name || asset.is_some_and(|(_, last)| last == name)
+        is_called(&self.name, name)
     }
 
     /// Before the first place: whether places are kept, or only counted.
@@ -227,6 +226,18 @@ impl TrackPoint {
         self.presence.missing_until(rows);
         self.presence.next = self.presence.next.max(rows);
     }
+}
+
+/// Returns `true` if a point or body whose whole name is `own` goes by `name`: its own, or the part after an asset's name and a colon.
+///
+/// ```
+/// use calibrate::is_called;
+///
+/// assert!(is_called("robot:Front", "Front") && !is_called("Front", "robot:Front"));
+/// ```
+pub fn is_called(own: &str, name: &str) -> bool {
+    let asset = own.rsplit_once(':');
+    own == name || asset.is_some_and(|(_, last)| last == name)
 }
 
 #[cfg(test)]

@@ -1,11 +1,13 @@
 //! One fault at a time, with what the filter must say of it.
 
-use experiment::FilterEvent;
-use pose_source::Frame;
+use experiment::{FilterEvent, FilterOptions, PoseFilter};
+use pose_source::{Frame, RigidBody};
+use swimmer_files::Reflectors;
 use swimmer_model::{Pose, wrapped_angle};
 
-use crate::cameras::{Faults, filmed, side_markers, swum};
+use crate::cameras::{Faults, REACH_M, reflector};
 use crate::seeds::filter;
+use crate::swum::{filmed, side_markers, swum};
 
 /// Filters frames; returns the events and the last pose.
 fn filtered(frames: &[Frame]) -> (Vec<FilterEvent>, Option<experiment::Pose>) {
@@ -177,4 +179,43 @@ fn side_reflectors_show_the_joints() {
         }
     }
     assert!(compared > 700, "{compared}");
+}
+
+/// A rigid body is the pose; markers are not needed. A few frames in which it is solved wrongly change nothing.
+#[test]
+fn a_rigid_body_is_the_pose() {
+    let poses = swum(800, 6.0, 10);
+    let mut frames = filmed(&poses, Faults::NONE, 10);
+    for (number, (frame, pose)) in frames.iter_mut().zip(&poses).enumerate() {
+        frame.markers.clear();
+        let wrong = if (400..403).contains(&number) {
+            2.0
+        } else {
+            0.0
+        };
+        let half = 0.5 * (pose.theta + wrong);
+        frame.bodies.push(RigidBody {
+            id: 7,
+            name: Some("robot".to_owned()),
+            position: [pose.x, pose.y, 0.05],
+            quaternion: [0.0, 0.0, half.sin(), half.cos()],
+        });
+    }
+    let reflectors = Reflectors {
+        front: reflector("Front", REACH_M),
+        back: reflector("Back", -REACH_M),
+        sides: None,
+        body: Some(swimmer_files::RigidBody::named("robot".to_owned())),
+    };
+    let mut filter = PoseFilter::new(FilterOptions::new(reflectors, 2.0 * REACH_M)).unwrap();
+    let events: Vec<_> = frames
+        .iter()
+        .filter_map(|frame| filter.push(frame))
+        .collect();
+    assert_eq!(events, [FilterEvent::Found]);
+    assert!(filter.knows_front());
+    assert_at(filter.pose(), poses.last().unwrap());
+    // A frame gives its pose once.
+    let received_s = frames.last().unwrap().received_s;
+    assert!(filter.take_pose(received_s).is_some() && filter.take_pose(received_s).is_none());
 }

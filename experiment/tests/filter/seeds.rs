@@ -1,29 +1,18 @@
 //! Error bounds over many seeds, measured against the truth at the moment of use.
 
-use experiment::{FilterEvent, FilterOptions, PoseFilter};
+use experiment::{FilterEvent, PoseFilter};
 use nalgebra::Vector2;
-use swimmer_files::{PointName, Reflector, Reflectors};
 use swimmer_model::{Pose, wrapped_angle};
 
-use crate::cameras::{Faults, RATE_HZ, REACH_M, SIDE_M, filmed, swum};
+use crate::cameras::{self, Faults, reflector};
+use crate::swum::{RATE_HZ, SIDE_M, filmed, swum};
 
+/// A filter that also follows the side links; reflectors there are from the joint outwards.
 pub(crate) fn filter(latency_s: f64) -> PoseFilter {
-    let reflector = |name: &str, along| Reflector {
-        point: PointName::Named(name.to_owned()),
-        at: [along, 0.0],
-    };
-    let reflectors = Reflectors {
-        front: reflector("Front", REACH_M),
-        back: reflector("Back", -REACH_M),
-        // From the joint outwards.
-        sides: Some([reflector("Tip", SIDE_M), reflector("Tail", SIDE_M)]),
-        body: None,
-    };
-    let options = FilterOptions {
+    cameras::filter(
         latency_s,
-        ..FilterOptions::new(reflectors, 2.0 * REACH_M)
-    };
-    PoseFilter::new(options).unwrap()
+        Some([reflector("Tip", SIDE_M), reflector("Tail", SIDE_M)]),
+    )
 }
 
 /// Errors at the times at which frames are received, extrapolated over the latency.

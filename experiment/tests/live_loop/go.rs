@@ -1,6 +1,7 @@
 //! The whole loop in virtual time: a robot that the model does not describe exactly is driven to poses by what bad cameras see.
 
-use crate::virtual_lab::{Lab, Truth, drive, planner};
+use crate::cameras::Faults;
+use crate::virtual_lab::{Lab, Truth, drive, drive_by_frames, planner};
 use experiment::{Controller, Ending, Goal, Likeness, Options, Target};
 use forecast::Kind;
 use rand::{RngExt, SeedableRng};
@@ -61,15 +62,37 @@ fn open_loop(seed: u64) -> [f64; 2] {
     off(&lab.pose, &to)
 }
 
+/// Origin of the poses.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Tracking {
+    /// Poses with noise.
+    Poses,
+    /// Frames of cameras with all faults, through the pose filter.
+    Frames,
+}
+
 /// Drives to the target of each seed; at most `missing` may end elsewhere, with a reason.
-fn reached(seeds: std::ops::Range<u64>, missing: usize) {
+fn reached(tracking: Tracking, seeds: std::ops::Range<u64>, missing: usize) {
     let (mut reached, mut others, mut far) = (0, Vec::new(), 0);
     let count = seeds.end - seeds.start;
     for seed in seeds {
         let (start, to) = trip(seed);
         let mut lab = Lab::new(Truth::hard(seed), start, seed);
-        let mut controller = controller(Goal::Reach(vec![target(&to)]));
-        drive(&mut lab, &mut controller, 3600.0, |_, _| ());
+        let goal = Goal::Reach(vec![target(&to)]);
+        let controller = match tracking {
+            Tracking::Poses => {
+                let mut controller = controller(goal);
+                drive(&mut lab, &mut controller, 3600.0, |_, _| ());
+                controller
+            }
+            Tracking::Frames => {
+                let (controller, counts) =
+                    drive_by_frames(&mut lab, &goal, Faults::ALL, seed, 3600.0);
+                println!("seed {seed}: {counts:?}");
+                assert!(counts.both < counts.frames * 4 / 5 && counts.swapped > 0);
+                controller
+            }
+        };
         let [distance, angle] = off(&lab.pose, &to);
         let open = open_loop(seed);
         far += usize::from(open[0] >= 0.015);
@@ -116,13 +139,24 @@ fn reached(seeds: std::ops::Range<u64>, missing: usize) {
 
 #[test]
 fn targets_are_reached() {
-    reached(0..2, 0);
+    reached(Tracking::Poses, 0..2, 0);
+}
+
+#[test]
+fn targets_are_reached_by_frames() {
+    reached(Tracking::Frames, 0..2, 0);
+}
+
+#[test]
+#[ignore = "soak: minutes"]
+fn forty_targets_are_reached_by_frames() {
+    reached(Tracking::Frames, 0..40, 2);
 }
 
 #[test]
 #[ignore = "soak: minutes"]
 fn forty_targets_are_reached() {
-    reached(0..40, 2);
+    reached(Tracking::Poses, 0..40, 2);
 }
 
 #[test]
@@ -248,6 +282,24 @@ fn a_lost_track_ends_in_rest() {
     }
     println!("track cut at ten moments: at rest within {worst:.2} s, bound {bound:.2} s");
     assert!(worst <= bound, "{worst} s");
+}
+
+/// The same with frames: the filter reports no pose of a robot that it does not see.
+#[test]
+fn a_lost_stream_ends_in_rest() {
+    let truth = Truth {
+        cut_s: Some(16.0),
+        ..Truth::hard(3)
+    };
+    let mut lab = Lab::new(truth, Pose::new(-0.2, 0.12, 0.0), 3);
+    let to = target(&Pose::new(0.2, 0.12, 0.0));
+    let goal = Goal::Reach(vec![to]);
+    let (controller, _) = drive_by_frames(&mut lab, &goal, Faults::ALL, 3, 600.0);
+    assert!(matches!(
+        controller.ending(),
+        Some(Ending::TrackingLost { .. })
+    ));
+    assert!(lab.is_at_rest() && !lab.touched_wall);
 }
 
 #[test]

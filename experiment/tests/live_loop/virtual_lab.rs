@@ -1,10 +1,11 @@
 //! A simulated laboratory in virtual time: robot, tank and cameras with their faults. It shares only the model and the gait curves
 //! with the code under test: joints, servos, integration (Runge–Kutta) and cameras are its own.
 
+use std::collections::VecDeque;
 use std::path::Path;
 use std::sync::OnceLock;
 
-use experiment::{Controller, Pose, Request};
+use experiment::{Controller, FilterCounts, Goal, Options, Pose, Request};
 use forecast::{Family, Planner, Scaled, Servos, Step, Tank};
 use nalgebra::{Vector2, Vector3};
 use rand::{RngExt, SeedableRng};
@@ -12,6 +13,8 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use swimmer_files::{AnyGait, GaitFile, ServoFile};
 use swimmer_model::{Gait, Model, Swimmer};
+
+use crate::cameras::{self, Cameras, Faults};
 
 pub(crate) const TANK: Tank = Tank {
     length: 1.0,
@@ -358,19 +361,68 @@ pub(crate) fn drive(
         for pose in lab.arrived() {
             controller.pose(&pose);
         }
-        for notice in std::mem::take(&mut lab.notices) {
-            match notice {
-                // The clocks match within 20 ms.
-                Notice::Began(time) => controller.play_began(time + 0.01),
-                Notice::AtRest => controller.at_rest(lab.now),
-            }
-        }
         watch(lab, controller);
-        while let Some(request) = controller.poll(lab.now) {
-            match request {
-                Request::Play(step) => lab.start(planner.gait(&step.member), step),
-                Request::Stop => lab.stop(),
-            }
+        exchange(lab, controller, &planner);
+    }
+}
+
+/// Passes the robot's notices to the controller, and its requests to the robot.
+fn exchange(lab: &mut Lab, controller: &mut Controller, planner: &Planner) {
+    for notice in std::mem::take(&mut lab.notices) {
+        match notice {
+            // The clocks match within 20 ms.
+            Notice::Began(time) => controller.play_began(time + 0.01),
+            Notice::AtRest => controller.at_rest(lab.now),
         }
     }
+    while let Some(request) = controller.poll(lab.now) {
+        match request {
+            Request::Play(step) => lab.start(planner.gait(&step.member), step),
+            Request::Stop => lab.stop(),
+        }
+    }
+}
+
+/// Drives to a goal by frames of faulty cameras, which the pose filter turns into poses. The run begins once the filter knows the
+/// front. Returns the controller, and the counts of the filter.
+pub(crate) fn drive_by_frames(
+    lab: &mut Lab,
+    goal: &Goal,
+    faults: Faults,
+    seed: u64,
+    until_s: f64,
+) -> (Controller, FilterCounts) {
+    let planner = planner();
+    let mut controller = None;
+    let mut cameras = Cameras::new(faults, seed);
+    let mut filter = cameras::filter(faults.latency_s, None);
+    let mut under_way = VecDeque::new();
+    while lab.now < until_s && !controller.as_ref().is_some_and(Controller::is_over) {
+        lab.advance();
+        if lab.truth.cut_s.is_none_or(|cut| lab.now < cut) {
+            under_way.push_back(cameras.expose(lab.now, &lab.pose));
+        }
+        while let Some(frame) = under_way.pop_front_if(|frame| frame.received_s <= lab.now) {
+            filter.push(&frame);
+            if let (Some(pose), Some(controller)) = (filter.take_pose(lab.now), &mut controller) {
+                controller.pose(&pose);
+            }
+        }
+        if controller.is_none() && filter.knows_front() {
+            let options = Options::default();
+            controller = Some(Controller::new(
+                planner.clone(),
+                goal.clone(),
+                options,
+                lab.now,
+            ));
+        }
+        if let Some(controller) = &mut controller {
+            exchange(lab, controller, &planner);
+        }
+    }
+    (
+        controller.expect("the front was never known"),
+        filter.counts(),
+    )
 }
