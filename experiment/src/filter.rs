@@ -7,7 +7,7 @@
 //!    predicted heading gives.
 //! 4. [`PoseFilter::pose_now`] extrapolates over the latency: the quickest of recent frames matches camera clock and host clock.
 //!
-//! With a rigid body in [`Reflectors`], its position and orientation are the measured pose, and steps 1 and 2 fall away.
+//! With a rigid body in [`Reflectors`](swimmer_files::Reflectors), its position and orientation are the measured pose, and steps 1 and 2 fall away.
 //!
 //! A pose that jumps is believed after a few frames that agree, and reported as [`FilterEvent::Jumped`].
 
