@@ -24,7 +24,7 @@ pub(crate) mod tangent;
 use std::path::{Path, PathBuf};
 
 use swimmer_files::{Known, SwimmerFile};
-use swimmer_model::{Swimmer, TangentialDrag};
+use swimmer_model::{InvalidSwimmer, Links, Swimmer, TangentialDrag};
 
 use crate::error::FitError;
 use crate::joints::{Measured, MeasuredServo, combined};
@@ -255,6 +255,11 @@ pub fn c_t_form(drag: &TangentialDrag<f64>) -> String {
         TangentialDrag::LogAspect(value) => format!("log_aspect = {value}"),
         TangentialDrag::HalfThickness(value) => format!("half_thickness = {value}"),
         TangentialDrag::OverViscosity(value) => format!("over_viscosity = {value}"),
+        TangentialDrag::PerLink(Links {
+            middle,
+            front,
+            back,
+        }) => format!("over_viscosity = {{ middle = {middle}, front = {front}, back = {back} }}"),
     }
 }
 
@@ -371,6 +376,10 @@ pub(crate) fn fit(
     level: f64,
 ) -> Result<Fit, FitError> {
     start.swimmer.validate()?;
+    start
+        .swimmer
+        .common_drag()
+        .map_err(InvalidSwimmer::Uncommon)?;
     if !(level > 0.0 && level < 1.0) {
         return Err(FitError::Level { level });
     }

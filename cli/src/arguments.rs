@@ -126,6 +126,15 @@ pub(crate) fn load_swimmer(preset_or_path: &str) -> Outcome<SwimmerFile> {
     printing(|context| SwimmerSource::from(preset_or_path).load(context))
 }
 
+/// The same for a robot, its twin or a fit, which know the paper's parameters only ([`Swimmer::common_drag`]).
+///
+/// [`Swimmer::common_drag`]: swimmer_model::Swimmer::common_drag
+pub(crate) fn load_robots_swimmer(preset_or_path: &str) -> Outcome<SwimmerFile> {
+    let file = load_swimmer(preset_or_path)?;
+    file.swimmer.common_drag()?;
+    Ok(file)
+}
+
 /// Prints a note if a swimmer file was fitted from data that changed since.
 pub(crate) fn say_if_stale(path: &Path) -> Outcome {
     printing(|context| warn_if_outdated(path, context))

@@ -2,6 +2,7 @@
 
 use forecast::ForecastError;
 use operations::{Error, ErrorKind};
+use swimmer_model::{InvalidSwimmer, UncommonDrag};
 
 use crate::output::verbose;
 
@@ -65,6 +66,12 @@ impl From<Error> for Failure {
             ErrorKind::BadInput => Self::BadInput(error.message),
             ErrorKind::Failed => Self::Tried(error.message),
         }
+    }
+}
+
+impl From<UncommonDrag> for Failure {
+    fn from(reason: UncommonDrag) -> Self {
+        Self::bad_input(&InvalidSwimmer::Uncommon(reason))
     }
 }
 

@@ -131,6 +131,7 @@ fn never_a_wrong_gait() {
             chi,
             tangential_drag: TangentialDrag::OverViscosity(1.0),
             sphere_radius: sphere,
+            ..Swimmer::purcell()
         };
         let model = Model::new(&swimmer).unwrap();
         let (forwards, elements, degree) = mesh;

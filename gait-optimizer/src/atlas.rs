@@ -96,6 +96,11 @@ impl AtlasProblem {
                 order: self.order,
             });
         }
+        if self.objective == Objective::Efficiency {
+            self.swimmer
+                .check_efficiency()
+                .map_err(InvalidProblem::from)?;
+        }
         Ok(validated(&self.swimmer, &self.bounds, GaitClass::Closed)?)
     }
 }

@@ -135,6 +135,10 @@ fn certify_swum(
     swum: Option<Vector2<f64>>,
 ) -> Result<Certificate, CertifyError> {
     let model = Model::new(&swimmer.of_unit_length())?;
+    swimmer.check_regular()?;
+    if objective == Objective::Efficiency {
+        swimmer.check_efficiency()?;
+    }
     let asked = |gait: &GaitFile, swum| of_samples(&model, of, gait, swum);
     AnyGait::from_file(gait)?;
     // The first sample matters only for sideways gaits, which have their heading there, and for joined gaits.

@@ -135,6 +135,7 @@ impl EfficiencyProblem {
     /// # Errors
     /// [`InvalidProblem`] if the problem is invalid.
     pub fn validated(&self) -> Result<Model<f64>, InvalidProblem> {
+        self.swimmer.check_efficiency()?;
         validated(&self.swimmer, &self.bounds, GaitClass::Symmetric)
     }
 }

@@ -131,7 +131,7 @@ impl HeightMap {
     /// # Errors
     /// [`HeightMapError`] if the swimmer or the square is out of range, or if the frame does not converge.
     pub fn new(swimmer: &Swimmer<f64>, half_width: f64) -> Result<Self, HeightMapError> {
-        swimmer.validate()?;
+        swimmer.check_regular()?;
         let model = Model::new(&swimmer.of_unit_length())?;
         if !(Self::NARROWEST..=Self::WIDEST).contains(&half_width) {
             return Err(HeightMapError::HalfWidth { value: half_width });

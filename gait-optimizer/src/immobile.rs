@@ -23,12 +23,15 @@ const LOOKS: usize = 8;
 /// Swimmer that no gait moves.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error(
-    "no gait moves this swimmer: its drag is the same in all directions (chi = {chi}, and what gaits could gain is {contrast:.1e} \
-     of the terms that it is a difference of, mere rounding or near it); give a chi farther from 1"
+    "no gait moves this swimmer: its {} the same in all directions ({}what gaits could gain is {contrast:.1e} \
+     of the terms that it is a difference of, mere rounding or near it); give {}",
+    if chi.is_some() { "drag is" } else { "masses are" },
+    chi.map_or(String::new(), |chi| format!("chi = {chi}, and ")),
+    if chi.is_some() { "a chi farther from 1" } else { "a smaller aspect" }
 )]
 pub struct Immobile {
-    /// χ.
-    pub chi: f64,
+    /// χ; `None` in a perfect fluid.
+    pub chi: Option<f64>,
     /// Largest slope of the height within the bounds, relative to the largest terms of its sum.
     pub contrast: f64,
 }
@@ -40,7 +43,7 @@ pub(crate) fn refuse_immobile(model: &Model<f64>, bounds: &Bounds) -> Result<(),
         return Ok(());
     }
     Err(Immobile {
-        chi: model.swimmer().chi,
+        chi: model.swimmer().is_viscous().then_some(model.swimmer().chi),
         contrast,
     })
 }

@@ -13,8 +13,9 @@ pub enum InvalidProblem {
     Swimmer(#[from] InvalidSwimmer),
     /// A gait with the paper's two symmetries rests on front and back links being alike.
     #[error(
-        "the side links differ (front {front} m, back {back} m): a gait with the paper's two symmetries needs them alike; `swimmer atlas` \
-         finds gaits of swimmers like this"
+        "the side links differ ({}): a gait with the paper's two symmetries needs them alike; `swimmer atlas` \
+         finds gaits of swimmers like this",
+        difference(*front, *back)
     )]
     Asymmetric {
         /// l₁ \[m\].
@@ -54,6 +55,15 @@ pub enum InvalidProblem {
     },
 }
 
+/// Difference of the side links: in length, or else in drag.
+fn difference(front: f64, back: f64) -> String {
+    if (front - back).abs() <= 1e-12 * front.abs() {
+        format!("in drag, both {front} m long")
+    } else {
+        format!("front {front} m, back {back} m")
+    }
+}
+
 /// Class of gaits that a problem is restricted to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum GaitClass {
@@ -77,7 +87,8 @@ pub(crate) fn validated(
         middle,
     } = swimmer.links;
     let model = Model::new(&swimmer.of_unit_length())?;
-    if class != GaitClass::Closed && (front - back).abs() > 1e-12 * front.abs() {
+    swimmer.check_regular()?;
+    if class != GaitClass::Closed && !swimmer.is_symmetric() {
         return Err(InvalidProblem::Asymmetric { front, back });
     }
     if class == GaitClass::Quarters {

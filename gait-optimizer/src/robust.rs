@@ -285,8 +285,7 @@ pub fn robust_efficiency(
     if !(1..=MOST_ORDER).contains(&order) {
         return Err(RobustError::Order { order });
     }
-    let links = swimmer.links;
-    if (links.front - links.back).abs() > 1e-12 * links.front.abs() {
+    if !swimmer.is_symmetric() {
         return Err(RobustError::Structure {
             problem: "the class of doubly symmetric gaits wants side links of one length",
         });
@@ -301,7 +300,7 @@ pub fn robust_efficiency(
     let family = FourierFamily::around(&ensemble.nominal, order, branch)?;
     let found = find(&family, &ensemble, over)?;
     let cycle = |x| family.cycle(&ensemble.nominal.model, x);
-    let by = certificate::overstepped(&cycle(&found.point), bounds, &links);
+    let by = certificate::overstepped(&cycle(&found.point), bounds, &swimmer.links);
     if by > 1e-10 {
         let bounds = *bounds;
         return Err(RobustError::Bound { by, bounds });

@@ -94,13 +94,11 @@ pub struct Sideways {
 /// ```
 pub fn sideways(problem: &SidewaysProblem, watch: Watch<'_>) -> Result<Sideways, SidewaysError> {
     let ours = from_this_end(problem, watch);
-    let links = problem.swimmer.links;
-    let alike = (links.front - links.back).abs() <= 1e-12 * links.front.abs();
-    if alike || matches!(ours, Err(SidewaysError::Problem(_))) {
+    if problem.swimmer.is_symmetric() || matches!(ours, Err(SidewaysError::Problem(_))) {
         return ours;
     }
     let mut other = *problem;
-    (other.swimmer.links.front, other.swimmer.links.back) = (links.back, links.front);
+    other.swimmer = problem.swimmer.exchanged();
     let theirs = from_this_end(&other, watch)
         .ok()
         .and_then(|found| from_the_other_end(problem, &found));

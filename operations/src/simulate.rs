@@ -70,6 +70,21 @@ pub struct Output {
 /// The robot cannot play the gait, and [`Options::played`] is given.
 pub fn run(subject: &Subject, options: &Options, context: &mut Context) -> Result<Output, Error> {
     let Subject { file, model, gait } = subject;
+    if let Some(shape) = file.swimmer.singular_shape(gait) {
+        return Err(Error::refused(format!(
+            "the gait passes the shape ({}, {}), at which the axles of the wheels of `{}` meet in one point or are parallel: A is \
+             infinite there; keep the gait on one side of such shapes (phi1 = phi2 if the side links are alike)",
+            crate::text::degrees(shape.x),
+            crate::text::degrees(shape.y),
+            file.name
+        )));
+    }
+    if options.played.is_some() && !file.swimmer.is_viscous() {
+        return Err(Error::refused(format!(
+            "`{}` is not in a viscous fluid, where the robot swims: leave out what the robot plays",
+            file.name
+        )));
+    }
     let crossing = crossing_share(&file.swimmer.links, gait);
     let stroke = swim(model, gait, &Tolerance::default());
     let played = options

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use swimmer_files::{Fluid, Quantity, SwimmerFile};
-use swimmer_model::{Model, TangentialDrag};
+use swimmer_model::{Medium, Model, TangentialDrag};
 
 use crate::arrays::{Array, Numbers, Shapes};
 use crate::errors::{BadInput, of_file};
@@ -101,6 +101,9 @@ impl Swimmer {
         set(&mut swimmer.links.middle, middle);
         set(&mut swimmer.links.front, front.or(side));
         set(&mut swimmer.links.back, back.or(side));
+        if chi.is_some() {
+            swimmer.side_chi = None;
+        }
         set(&mut swimmer.chi, chi);
         set(&mut swimmer.sphere_radius, sphere_radius);
         let forms = [
@@ -207,7 +210,7 @@ impl Swimmer {
         self.file.swimmer.total_length()
     }
 
-    /// χ = c_n/c_t.
+    /// χ = c_n/c_t, of the middle link if the links have their own.
     #[getter]
     fn chi(&self) -> f64 {
         self.file.swimmer.chi
@@ -219,17 +222,34 @@ impl Swimmer {
         self.file.swimmer.sphere_radius
     }
 
-    /// The form of c_t and its value, as in the swimmer file: {"log_aspect": 4.543}, {"half_thickness": …} or {"over_viscosity": …}.
+    /// The form of c_t and its value, as in the swimmer file: {"log_aspect": 4.543}, {"half_thickness": …} or {"over_viscosity": …},
+    /// the last with one number or with {"middle": …, "front": …, "back": …}.
     #[getter]
     fn c_t<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let (form, value) = match self.file.swimmer.tangential_drag {
-            TangentialDrag::LogAspect(value) => ("log_aspect", value),
-            TangentialDrag::HalfThickness(value) => ("half_thickness", value),
-            TangentialDrag::OverViscosity(value) => ("over_viscosity", value),
-        };
         let told = PyDict::new(py);
-        told.set_item(form, value)?;
+        match self.file.swimmer.tangential_drag {
+            TangentialDrag::LogAspect(value) => told.set_item("log_aspect", value)?,
+            TangentialDrag::HalfThickness(value) => told.set_item("half_thickness", value)?,
+            TangentialDrag::OverViscosity(value) => told.set_item("over_viscosity", value)?,
+            TangentialDrag::PerLink(values) => {
+                let links = PyDict::new(py);
+                links.set_item("middle", values.middle)?;
+                links.set_item("front", values.front)?;
+                links.set_item("back", values.back)?;
+                told.set_item("over_viscosity", links)?;
+            }
+        }
         Ok(told)
+    }
+
+    /// Medium of the links: "viscous", "perfect" or "wheels".
+    #[getter]
+    fn medium(&self) -> &'static str {
+        match self.file.swimmer.medium {
+            Medium::Viscous => "viscous",
+            Medium::Perfect { .. } => "perfect",
+            Medium::Wheels => "wheels",
+        }
     }
 
     /// The fingerprint that gait files carry: SHA-256 of links, drag and sphere.

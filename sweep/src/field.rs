@@ -211,6 +211,14 @@ impl Field {
             || (other == Self::Side && sides(self))
     }
 
+    /// Returns `true` for a parameter of the drag or of the sphere, which only a swimmer with common drag has.
+    pub(crate) fn is_of_the_drag(self) -> bool {
+        matches!(
+            self,
+            Self::Chi | Self::LogAspect | Self::HalfThickness | Self::OverViscosity | Self::Sphere
+        )
+    }
+
     /// Sets the parameter of a design to a value.
     pub(crate) fn set(self, design: &mut Design, value: f64) {
         let Design {

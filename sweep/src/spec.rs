@@ -7,6 +7,7 @@ use std::path::Path;
 
 use serde::Deserialize;
 use swimmer_files::{FileError, SwimmerFile, parse_angle, parse_rate};
+use swimmer_model::InvalidSwimmer;
 use toml::Spanned;
 
 use crate::objective::Aim;
@@ -150,6 +151,11 @@ pub(crate) fn read(text: &str, path: &Path) -> Result<Content, SweepError> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let base = SwimmerFile::find_from(raw.swimmer.get_ref(), folder)?;
     let (axis, design) = designs(&source, &raw)?;
+    let changes_drag = axis.iter().any(|axis| axis.name.is_of_the_drag());
+    if let (true, Err(reason)) = (changes_drag, base.swimmer.common_drag()) {
+        let problem = InvalidSwimmer::Uncommon(reason).to_string();
+        return Err(source.wrong(raw.swimmer.span(), problem));
+    }
     let objectives = objectives(&source, &raw, &axis)?;
     let tasks = tasks(&source, &raw, &axis, design)?;
     let max_rate = raw.max_rate.as_ref().map(|told| {

@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use sha2::{Digest, Sha256};
-use swimmer_model::{Swimmer, TangentialDrag};
+use swimmer_model::{Link, Medium, Swimmer, TangentialDrag};
 
 /// SHA-256 over the canonical text of a swimmer's physics (links, χ, form and value of `c_t`, sphere); its name, fluid and
 /// servos do not change which gait is best, so they stay out.
@@ -35,15 +35,20 @@ impl SwimmerHash {
     }
 }
 
+/// 17 digits. Adding zero makes -0.0 and 0.0 the same swimmer.
+fn digits(value: f64) -> String {
+    format!("{:.16e}", value + 0.0)
+}
+
 /// One line for each parameter, 17 digits, order fixed for ever: a change here is a new version word.
 fn canonical_text(swimmer: &Swimmer<f64>) -> String {
     let (form, value) = match swimmer.tangential_drag {
+        _ if swimmer.common_drag().is_err() => return canonical_text_2(swimmer),
         TangentialDrag::LogAspect(value) => ("log_aspect", value),
         TangentialDrag::HalfThickness(value) => ("half_thickness", value),
         TangentialDrag::OverViscosity(value) => ("over_viscosity", value),
+        TangentialDrag::PerLink(_) => return canonical_text_2(swimmer),
     };
-    // Adding zero makes -0.0 and 0.0 the same swimmer.
-    let digits = |value: f64| format!("{:.16e}", value + 0.0);
     format!(
         "swimmer 1\nmiddle {}\nfront {}\nback {}\nchi {}\nc_t {form} {}\nsphere {}\n",
         digits(swimmer.links.middle),
@@ -53,6 +58,38 @@ fn canonical_text(swimmer: &Swimmer<f64>) -> String {
         digits(value),
         digits(swimmer.sphere_radius),
     )
+}
+
+/// The same for a swimmer beyond the paper's parameters: the medium, and what matters in it.
+fn canonical_text_2(swimmer: &Swimmer<f64>) -> String {
+    let links = &swimmer.links;
+    let [middle, front, back] = [links.middle, links.front, links.back].map(digits);
+    let body = format!("swimmer 2\nmiddle {middle}\nfront {front}\nback {back}\n");
+    match swimmer.medium {
+        Medium::Perfect { aspect, density } => {
+            format!("{body}perfect {} {}\n", digits(aspect), digits(density))
+        }
+        Medium::Wheels => format!("{body}wheels\n"),
+        Medium::Viscous => {
+            let links = [Link::Middle, Link::Front, Link::Back];
+            let chi = links.map(|link| digits(swimmer.chi_of(link))).join(" ");
+            let c_t = match swimmer.tangential_drag {
+                TangentialDrag::LogAspect(value) => format!("log_aspect {}", digits(value)),
+                TangentialDrag::HalfThickness(value) => {
+                    format!("half_thickness {}", digits(value))
+                }
+                TangentialDrag::OverViscosity(value) => {
+                    format!("over_viscosity {}", digits(value))
+                }
+                TangentialDrag::PerLink(values) => {
+                    let values = links.map(|link| digits(values.of(link)));
+                    format!("over_viscosity {}", values.join(" "))
+                }
+            };
+            let sphere = links.map(|link| digits(swimmer.sphere_radius_on(link)));
+            format!("{body}chi {chi}\nc_t {c_t}\nsphere {}\n", sphere.join(" "))
+        }
+    }
 }
 
 impl fmt::Display for SwimmerHash {
@@ -81,6 +118,7 @@ impl FromStr for SwimmerHash {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use swimmer_model::Links;
 
     /// Gait files in the world carry these digits: if this fails, do not change the test.
     #[test]
@@ -109,8 +147,74 @@ mod tests {
             }
             all.push(other);
         }
+        let links = robot.links;
+        let own = TangentialDrag::PerLink;
+        all.extend([
+            Swimmer {
+                side_chi: Some([robot.chi, 2.0]),
+                ..robot
+            },
+            Swimmer {
+                side_chi: Some([2.0, robot.chi]),
+                ..robot
+            },
+            Swimmer {
+                sphere_on: Link::Front,
+                ..robot
+            },
+            Swimmer {
+                sphere_on: Link::Back,
+                ..robot
+            },
+            Swimmer {
+                tangential_drag: own(links),
+                ..robot
+            },
+            Swimmer {
+                tangential_drag: own(Links { back: 1.0, ..links }),
+                ..robot
+            },
+            Swimmer::kinematic_snake(),
+            Swimmer::perfect_fluid(),
+            Swimmer {
+                medium: Medium::Perfect {
+                    aspect: 0.2,
+                    density: 1000.0,
+                },
+                ..Swimmer::perfect_fluid()
+            },
+            Swimmer {
+                medium: Medium::Perfect {
+                    aspect: 0.1,
+                    density: 998.0,
+                },
+                ..Swimmer::perfect_fluid()
+            },
+            Swimmer {
+                links,
+                ..Swimmer::perfect_fluid()
+            },
+        ]);
         let hashes: std::collections::HashSet<_> = all.iter().map(SwimmerHash::of).collect();
         assert_eq!(hashes.len(), all.len());
+        // Drag has no effect outside a viscous fluid, and no sphere sits nowhere.
+        let snake = Swimmer {
+            chi: 3.0,
+            ..Swimmer::kinematic_snake()
+        };
+        assert_eq!(
+            SwimmerHash::of(&snake),
+            SwimmerHash::of(&Swimmer::kinematic_snake())
+        );
+        let bare = Swimmer {
+            sphere_radius: 0.0,
+            ..robot
+        };
+        let nowhere = Swimmer {
+            sphere_on: Link::Back,
+            ..bare
+        };
+        assert_eq!(SwimmerHash::of(&bare), SwimmerHash::of(&nowhere));
     }
 
     #[test]

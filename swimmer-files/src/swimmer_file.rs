@@ -1,11 +1,12 @@
 //! The swimmer file: one robot's lengths and drag, and, where known, its fluid and its servos.
 
+mod per_link;
 mod read;
 mod write;
 
 use std::path::Path;
 
-use swimmer_model::Swimmer;
+use swimmer_model::{Link, Swimmer};
 
 use crate::place::read_text;
 use crate::{FileError, SwimmerHash, write_atomically};
@@ -76,14 +77,22 @@ impl Default for ServoFile {
 
 impl SwimmerFile {
     /// The presets' names, as [`SwimmerFile::preset`] takes them.
-    pub const PRESETS: [&'static str; 3] = ["purcell", "robot", "robot-slender"];
+    pub const PRESETS: [&'static str; 5] = [
+        "purcell",
+        "robot",
+        "robot-slender",
+        "perfect-fluid",
+        "kinematic-snake",
+    ];
 
-    /// A preset by name: `purcell`, `robot` or `robot-slender`; none of them names a fluid or servos.
+    /// Returns a preset by its name, one of [`SwimmerFile::PRESETS`]; none of them names a fluid or servos.
     pub fn preset(name: &str) -> Option<Self> {
         let swimmer = match name {
             "purcell" => Swimmer::purcell(),
             "robot" => Swimmer::robot(),
             "robot-slender" => Swimmer::robot_slender(),
+            "perfect-fluid" => Swimmer::perfect_fluid(),
+            "kinematic-snake" => Swimmer::kinematic_snake(),
             _ => return None,
         };
         Some(Self {
@@ -161,12 +170,24 @@ impl SwimmerFile {
     /// Possible but unlikely values, each in a sentence with its physics.
     pub fn doubts(&self) -> Vec<String> {
         let swimmer = &self.swimmer;
-        let (chi, sphere_radius) = (swimmer.chi, swimmer.sphere_radius);
+        let sphere_radius = swimmer.sphere_radius;
         let length = swimmer.total_length();
         let mut doubts = Vec::new();
+        if !swimmer.is_viscous() {
+            return doubts;
+        }
+        let chi = [Link::Middle, Link::Front, Link::Back]
+            .map(|link| swimmer.chi_of(link))
+            .into_iter()
+            .fold(f64::INFINITY, f64::min);
         if sphere_radius > length {
+            let link = match swimmer.sphere_on {
+                Link::Middle => "middle",
+                Link::Front => "front",
+                Link::Back => "back",
+            };
             doubts.push(format!(
-                "a sphere of radius {sphere_radius} m holds the middle link of a swimmer {length:.3} m long all but still, and its \
+                "a sphere of radius {sphere_radius} m holds the {link} link of a swimmer {length:.3} m long all but still, and its \
                  flow would reach the links, which this model leaves out; [sphere] radius is in metres"
             ));
         }

@@ -3,9 +3,9 @@
 //! Without a sphere only χ = c_n/c_t matters. With a sphere, c_t/μ determines the sphere's drag relative to that of the links,
 //! and a fit of (r_s, χ) depends on the form chosen here.
 
-use crate::Scalar;
+use crate::{Link, Links, Scalar};
 
-/// Tangential resistance coefficient over viscosity, c_t/μ (dimensionless), in one of three forms.
+/// Tangential resistance coefficient over viscosity, c_t/μ (dimensionless), in one of four forms.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TangentialDrag<T> {
     /// One value for all links from a common ln(l/a): c_t/μ = 2π / ln(l/a).
@@ -14,16 +14,19 @@ pub enum TangentialDrag<T> {
     HalfThickness(T),
     /// c_t/μ, common to all links.
     OverViscosity(T),
+    /// c_t/μ of each link.
+    PerLink(Links<T>),
 }
 
 impl<T: Scalar> TangentialDrag<T> {
-    /// c_t/μ of a link of the given length \[m\].
-    pub fn over_viscosity(&self, length: T) -> T {
+    /// c_t/μ of a link with the given length \[m\].
+    pub fn over_viscosity(&self, link: Link, length: T) -> T {
         let two_pi = T::from_f64(core::f64::consts::TAU);
         match *self {
             Self::LogAspect(log_aspect) => two_pi / log_aspect,
             Self::HalfThickness(half) => two_pi / (length / half).ln(),
             Self::OverViscosity(value) => value,
+            Self::PerLink(values) => values.of(link),
         }
     }
 
@@ -34,6 +37,7 @@ impl<T: Scalar> TangentialDrag<T> {
             Self::LogAspect(v) => TangentialDrag::LogAspect(to(v)),
             Self::HalfThickness(v) => TangentialDrag::HalfThickness(to(v)),
             Self::OverViscosity(v) => TangentialDrag::OverViscosity(to(v)),
+            Self::PerLink(values) => TangentialDrag::PerLink(values.cast()),
         }
     }
 }

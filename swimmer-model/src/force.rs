@@ -1,6 +1,6 @@
 //! Distribution of the fluid's force along the links.
 
-use crate::{Model, Scalar};
+use crate::{Link, Model, Scalar};
 use nalgebra::Vector2;
 
 /// Link in the middle link's frame with the fluid's force per length, which is linear between the ends.
@@ -14,20 +14,24 @@ pub struct LinkForce<T> {
 
 impl<T: Scalar> Model<T> {
     /// Force of the fluid on the back, middle and front link at shape Φ with joint rates Φ̇ \[rad/s\], by resistive force theory:
-    /// −c_t along the link and −c_n across it, times the local velocity. The force on the sphere is not included.
+    /// −c_t along the link and −c_n across it, times the local velocity. The force on the sphere is not included. Returns `None`
+    /// outside a viscous fluid.
     ///
     /// ```
     /// use nalgebra::Vector2;
     /// use swimmer_model::{Model, Swimmer};
     ///
     /// let model = Model::new(&Swimmer::<f64>::purcell())?;
-    /// let links = model.link_forces(&Vector2::new(0.5, -0.3), &Vector2::new(1.0, 0.0));
+    /// let links = model.link_forces(&Vector2::new(0.5, -0.3), &Vector2::new(1.0, 0.0)).expect("a viscous fluid");
     /// let total: f64 = links.iter().map(|link| 0.5 * (link.density[0].x + link.density[1].x)).sum();
     /// assert!(total.abs() < 1e-12, "links of length 1 without a sphere: no net force");
     /// # Ok::<(), swimmer_model::InvalidSwimmer>(())
     /// ```
-    pub fn link_forces(&self, phi: &Vector2<T>, rate: &Vector2<T>) -> [LinkForce<T>; 3] {
+    pub fn link_forces(&self, phi: &Vector2<T>, rate: &Vector2<T>) -> Option<[LinkForce<T>; 3]> {
         let swimmer = self.swimmer();
+        if !swimmer.is_viscous() {
+            return None;
+        }
         let links = &swimmer.links;
         let body = self.local_connection(phi) * rate;
         let outline = links.outline(phi);
@@ -47,10 +51,10 @@ impl<T: Scalar> Model<T> {
             Vector2::new(T::one(), T::zero()),
             Vector2::new(cos1, sin1),
         ];
-        let lengths = [links.back, links.middle, links.front];
-        core::array::from_fn(|link| {
-            let tangential = swimmer.tangential_drag.over_viscosity(lengths[link]);
-            let normal = swimmer.chi * tangential;
+        let order = [Link::Back, Link::Middle, Link::Front];
+        Some(core::array::from_fn(|link| {
+            let tangential = swimmer.tangential_drag_of(order[link]);
+            let normal = swimmer.chi_of(order[link]) * tangential;
             let density = |end: usize| {
                 let velocity = carried(&outline[end]) + turned[end];
                 let slip = along[link] * along[link].dot(&velocity);
@@ -60,7 +64,7 @@ impl<T: Scalar> Model<T> {
                 ends: [outline[link], outline[link + 1]],
                 density: [density(link), density(link + 1)],
             }
-        })
+        }))
     }
 }
 
@@ -91,7 +95,7 @@ mod tests {
                 (Vector2::new(-2.1, -0.3), Vector2::new(-0.2, 0.9)),
                 (Vector2::new(0.0, 2.6), Vector2::new(1.1, 0.0)),
             ] {
-                let [back, _, front] = model.link_forces(&phi, &rate);
+                let [back, _, front] = model.link_forces(&phi, &rate).unwrap();
                 // φ₁ turns the front link counter-clockwise, φ₂ the back link clockwise.
                 let torques = Vector2::new(
                     -moment(&front, &front.ends[0]),
@@ -117,7 +121,7 @@ mod tests {
             let drag = 6.0 * PI * swimmer.sphere_radius;
             let mut force = Vector2::new(body.x, body.y) * -drag;
             let mut torque = -8.0 * PI * swimmer.sphere_radius.powi(3) * body.z;
-            for link in model.link_forces(&phi, &rate) {
+            for link in model.link_forces(&phi, &rate).unwrap() {
                 let [a, b] = link.ends;
                 let [f, g] = link.density;
                 force += (f + g) * (0.5 * (b - a).norm());

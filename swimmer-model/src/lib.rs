@@ -11,6 +11,7 @@
 //!   mirror-symmetric shape, φ₁ = −φ₂ the point-symmetric one. Angles are in radians and never wrapped.
 //! - A link of length l at velocity v feels the force −c_t l (v·t) t − c_n l (v·n) n and the torque −c_n l³ω/12 (the
 //!   paper's equation 1), χ = c_n/c_t; a sphere of radius r_s at the middle link's centre adds 6πμ r_s and 8πμ r_s³.
+//! - Another [`Medium`] (a perfect fluid, wheels) gives each link other numbers ([`LinkTensor`]); all formulas stay.
 //! - **Everything is over the viscosity μ**: c_t stands for c_t/μ ([`TangentialDrag`]), power and energy are P/μ and E/μ.
 //!   Lengths are in metres, or in any one unit.
 //!
@@ -45,6 +46,7 @@ mod force;
 pub mod gait;
 mod gauss_legendre;
 mod heading;
+mod medium;
 mod model;
 mod outline;
 mod pose;
@@ -53,6 +55,7 @@ mod resistance;
 mod scalar;
 pub mod stroke;
 mod swimmer;
+mod wheels;
 
 pub use derivatives::{FirstDerivatives, SecondDerivatives, WeighedCurvature};
 pub use drag::TangentialDrag;
@@ -63,6 +66,7 @@ pub use gait::{
 };
 pub use gauss_legendre::GaussLegendre;
 pub use heading::{FullFirstDerivatives, FullSecondDerivatives};
+pub use medium::{Link, LinkTensor, Medium, UncommonDrag};
 pub use model::Model;
 pub use pose::{Pose, wrapped_angle};
 pub use scalar::Scalar;

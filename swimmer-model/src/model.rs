@@ -1,11 +1,13 @@
 //! The swimmer's equations of motion: local connection A(Φ) and power matrix W(Φ), with exact derivatives.
 //!
 //! The net force and torque on a body that moves with body velocity ξ = (v_x, v_y, θ̇) and joint rates Φ̇ are
-//! −(M ξ + N Φ̇); they vanish, so ξ = A Φ̇ with A = −M⁻¹N, and the power is Φ̇ᵀ W Φ̇ with W = U + NᵀA.
+//! −(M ξ + N Φ̇); they vanish, so ξ = A Φ̇ with A = −M⁻¹N, and the power is Φ̇ᵀ W Φ̇ with W = U + NᵀA. In another [`crate::Medium`]
+//! the same balance is that of momenta, or of the wheels' constraints.
 
+use crate::medium::sphere_turning;
 use crate::resistance::{Blocks, Factors3, SideLink, Symmetric3, Terms};
 use crate::{
-    FirstDerivatives, InvalidSwimmer, Scalar, SecondDerivatives, Swimmer, WeighedCurvature,
+    FirstDerivatives, InvalidSwimmer, Link, Scalar, SecondDerivatives, Swimmer, WeighedCurvature,
 };
 use nalgebra::{Matrix2, Matrix3x2, Vector2, Vector3};
 
@@ -27,11 +29,6 @@ struct Balance<T> {
     a: [Vector3<T>; 2],
 }
 
-/// A sphere's rotational drag over the viscosity, 8π r³.
-fn sphere_turning<T: Scalar>(radius: T) -> T {
-    T::from_f64(8.0 * core::f64::consts::PI) * radius * radius * radius
-}
-
 impl<T: Scalar> Model<T> {
     /// Prepares the resistance coefficients.
     ///
@@ -39,22 +36,17 @@ impl<T: Scalar> Model<T> {
     /// The swimmer's parameters are out of range ([`Swimmer::validate`]).
     pub fn new(swimmer: &Swimmer<T>) -> Result<Self, InvalidSwimmer> {
         swimmer.validate()?;
-        let links = swimmer.links;
-        let (chi, l0, radius) = (swimmer.chi, links.middle, swimmer.sphere_radius);
-        let drag = |length| swimmer.tangential_drag.over_viscosity(length);
-        let tangential = drag(l0) * l0;
-        let normal = chi * tangential;
-        let sphere = T::from_f64(6.0 * core::f64::consts::PI) * radius;
-        let middle = Symmetric3::diagonal(
-            tangential + sphere,
-            normal + sphere,
-            normal * l0 * l0 / T::from_f64(12.0) + sphere_turning(radius),
-        );
-        let side = |length, mirror| SideLink::new(drag(length), chi, length, l0, mirror);
+        let middle = swimmer.tensor(Link::Middle);
+        let side = |link, mirror| {
+            let (tensor, length) = (swimmer.tensor(link), swimmer.length_of(link));
+            let is_rod = swimmer.is_viscous() && swimmer.sphere_radius_on(link) == T::zero();
+            let new = if is_rod { SideLink::rod } else { SideLink::new };
+            new(&tensor, length, swimmer.links.middle, mirror)
+        };
         Ok(Self {
             swimmer: *swimmer,
-            middle,
-            sides: [side(links.front, T::one()), side(links.back, -T::one())],
+            middle: Symmetric3::diagonal(middle.tangential, middle.normal, middle.rotational),
+            sides: [side(Link::Front, T::one()), side(Link::Back, -T::one())],
         })
     }
 
@@ -77,7 +69,11 @@ impl<T: Scalar> Model<T> {
     pub fn with_turning_drag(&self, factor: T) -> Self {
         let turning = sphere_turning(self.swimmer.sphere_radius) * (factor - T::one());
         let mut out = *self;
-        out.middle.zz += turning;
+        match self.swimmer.sphere_on {
+            Link::Middle => out.middle.zz += turning,
+            Link::Front => out.sides[0].add_rotational(turning),
+            Link::Back => out.sides[1].add_rotational(turning),
+        }
         out
     }
 
@@ -112,7 +108,8 @@ impl<T: Scalar> Model<T> {
         self.balance(turns(phi)).connection()
     }
 
-    /// W(Φ)/μ: the power is Φ̇ᵀ W Φ̇ (paper, equation for p(t)). Symmetric, positive definite, in m³.
+    /// W(Φ)/μ: the power is Φ̇ᵀ W Φ̇ (paper, equation for p(t)). Symmetric, positive definite, in m³. In a perfect fluid it is
+    /// twice the kinetic energy per metre of depth \[kg m\]; on wheels it is zero to rounding.
     ///
     /// ```
     /// use nalgebra::Vector2;

@@ -1,22 +1,22 @@
 //! Grand resistance matrix at θ = 0 as trigonometric polynomials.
 //!
 //! Seen from the middle link, a side link of length l at angle φ has the body/body block M, the body/joint block n and
-//! the joint/joint block u, all linear in five functions of φ (k_t = c_t l, k_n = χ c_t l, h = l₀/2, b = l/2):
+//! the joint/joint block u, all linear in five functions of φ. With the link's tensor (k_t, k_n, k_r), h = l₀/2 and b = l/2:
 //!
 //! ```text
 //! p = k_t cos² + k_n sin²    r = (k_t − k_n) cos sin    e = k_n b sin
-//! q = k_t sin² + k_n cos²                               f = k_n b cos       u = k_n l²/3
+//! q = k_t sin² + k_n cos²                               f = k_n b cos       u = k_r + k_n b²
 //!
 //!     ⎡ p   r   h r − e         ⎤        ⎡ −e      ⎤
 //! M = ⎢ ·   q   h q + f         ⎥    n = ⎢ f       ⎥
 //!     ⎣ ·   ·   h² q + 2h f + u ⎦        ⎣ h f + u ⎦
 //! ```
 //!
-//! Because p′ = −2r, q′ = 2r, r′ = p − q, e′ = f, f′ = −e and u′ = 0, a derivative of the block is the same block of
+//! In a viscous fluid k_t = c_t l, k_n = c_n l and k_r = c_n l³/12, so u = k_n l²/3. Because p′ = −2r, q′ = 2r, r′ = p − q, e′ = f, f′ = −e and u′ = 0, a derivative of the block is the same block of
 //! differentiated coefficients: exact derivatives of any order cost no new formula. The back link is the front link
 //! seen in the mirror x → −x, that is with the body velocities (x, θ) negated.
 
-use crate::Scalar;
+use crate::{LinkTensor, Scalar};
 use nalgebra::Vector3;
 
 /// A symmetric 3×3 matrix by its upper triangle, rows and columns (x, y, θ).
@@ -120,15 +120,15 @@ impl<T: Scalar> Factors3<T> {
 pub(crate) struct SideLink<T> {
     tangential: T,
     normal: T,
-    /// k_n l/2
+    /// k_n b
     lever: T,
-    /// u = k_n l²/3
+    /// u = k_r + k_n b²
     hinge: T,
     /// h = l₀/2
     arm: T,
     /// b = l/2
     half: T,
-    /// Roots of k_t, k_n and k_n l²/12.
+    /// Roots of k_t, k_n and k_r.
     roots: Vector3<T>,
     /// −1 for the back link: the mirror x → −x.
     mirror: T,
@@ -169,25 +169,40 @@ impl<T: Scalar> Terms<T> {
 }
 
 impl<T: Scalar> SideLink<T> {
-    /// `drag` is c_t/μ, `middle` is l₀, `mirror` is −1 for the back link and 1 for the front one.
-    pub(crate) fn new(drag: T, chi: T, length: T, middle: T, mirror: T) -> Self {
-        let tangential = drag * length;
-        let normal = chi * tangential;
+    /// Side link with a tensor and a length on a middle link of length `middle`; `mirror` is −1 for the back link and 1 for the
+    /// front one.
+    pub(crate) fn new(tensor: &LinkTensor<T>, length: T, middle: T, mirror: T) -> Self {
+        let LinkTensor {
+            tangential,
+            normal,
+            rotational,
+        } = *tensor;
         let half = T::from_f64(0.5);
+        let lever = normal * length * half;
         Self {
             tangential,
             normal,
-            lever: normal * length * half,
-            hinge: normal * length * length / T::from_f64(3.0),
+            lever,
+            hinge: rotational + lever * (length * half),
             arm: middle * half,
             half: length * half,
-            roots: Vector3::new(
-                tangential.sqrt(),
-                normal.sqrt(),
-                length * (normal / T::from_f64(12.0)).sqrt(),
-            ),
+            roots: Vector3::new(tangential.sqrt(), normal.sqrt(), rotational.sqrt()),
             mirror,
         }
+    }
+
+    /// The same for a slender rod in a viscous fluid, k_r = k_n l²/12, whose hinge and root need no sum.
+    pub(crate) fn rod(tensor: &LinkTensor<T>, length: T, middle: T, mirror: T) -> Self {
+        let mut rod = Self::new(tensor, length, middle, mirror);
+        rod.hinge = rod.normal * length * length / T::from_f64(3.0);
+        rod.roots.z = length * (rod.normal / T::from_f64(12.0)).sqrt();
+        rod
+    }
+
+    /// Adds to k_r.
+    pub(crate) fn add_rotational(&mut self, more: T) {
+        self.hinge += more;
+        self.roots.z = (self.roots.z * self.roots.z + more).sqrt();
     }
 
     /// Tangential, normal and angular velocity of the link's centre for the body velocity `body` and the joint rate `rate`, each
@@ -204,7 +219,7 @@ impl<T: Scalar> SideLink<T> {
         )
     }
 
-    /// u, the constant joint/joint block: the torque about the joint for a unit rate of the free link.
+    /// u, the constant joint/joint block: tensor of the link about its joint.
     #[inline(always)]
     pub(crate) fn hinge(&self) -> T {
         self.hinge
@@ -237,6 +252,27 @@ impl<T: Scalar> SideLink<T> {
                 zz: h * (h * t.q) + (hf + hf) + t.u,
             },
             joint: Vector3::new(-s * t.e, t.f, s * (hf + t.u)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Link, Swimmer};
+
+    /// A rod's tensor in the general formula gives the rod's own numbers.
+    #[test]
+    fn the_general_side_link_is_the_rod() {
+        for swimmer in [Swimmer::<f64>::purcell(), Swimmer::robot_slender()] {
+            let (tensor, length) = (swimmer.tensor(Link::Front), swimmer.links.front);
+            let general = SideLink::new(&tensor, length, swimmer.links.middle, 1.0);
+            let rod = SideLink::rod(&tensor, length, swimmer.links.middle, 1.0);
+            assert!((general.hinge / rod.hinge - 1.0).abs() < 1e-15);
+            assert!((general.roots - rod.roots).amax() < 1e-15 * rod.roots.amax());
+            let mut heavier = rod;
+            heavier.add_rotational(rod.roots.z.powi(2));
+            assert!((heavier.roots.z / rod.roots.z - 2.0_f64.sqrt()).abs() < 1e-15);
         }
     }
 }

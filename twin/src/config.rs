@@ -8,7 +8,7 @@ use link_protocol::{Board, Configuration, FirmwareVersion, ResetReason, ServoSet
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use swimmer_files::{ServoFile, SwimmerFile};
-use swimmer_model::{Scalar, Swimmer, TangentialDrag};
+use swimmer_model::{Scalar, Swimmer, TangentialDrag, UncommonDrag};
 
 use crate::camera::CameraConfig;
 
@@ -83,7 +83,17 @@ impl TwinConfig {
                 pulse_step_ns: 0,
             },
             limits,
-            belief: configuration(&swimmer, servo),
+            // `Twin::new` refuses a swimmer that has no configuration.
+            belief: configuration(&swimmer, servo).unwrap_or_else(|_| {
+                let links = swimmer.links;
+                common_configuration(
+                    &Swimmer {
+                        links,
+                        ..Swimmer::robot()
+                    },
+                    servo,
+                )
+            }),
             swimmer,
             servos: [settings; 2],
             shafts: [settings.into(); 2],
@@ -134,16 +144,29 @@ impl TwinConfig {
     }
 }
 
-/// Configuration message for a swimmer with the limits of its servos.
+/// Configuration message for a swimmer with the limits of its servos. The front and back links may differ.
+///
+/// # Errors
+/// The message has one χ, one form of c_t and a sphere on the middle link; the swimmer needs others.
 ///
 /// ```
 /// use swimmer_files::{ServoFile, SwimmerFile};
 ///
 /// let robot = SwimmerFile::preset("robot").unwrap().swimmer;
-/// let configuration = twin::configuration(&robot, &ServoFile::default());
+/// let configuration = twin::configuration(&robot, &ServoFile::default())?;
 /// assert!((f64::from(configuration.chi) - 3.598).abs() < 1e-6);
+/// # Ok::<(), swimmer_model::UncommonDrag>(())
 /// ```
-pub fn configuration(swimmer: &Swimmer<f64>, servo: &ServoFile) -> Configuration {
+pub fn configuration(
+    swimmer: &Swimmer<f64>,
+    servo: &ServoFile,
+) -> Result<Configuration, UncommonDrag> {
+    swimmer.common_drag()?;
+    Ok(common_configuration(swimmer, servo))
+}
+
+/// Configuration message for a swimmer with common drag.
+fn common_configuration(swimmer: &Swimmer<f64>, servo: &ServoFile) -> Configuration {
     Configuration {
         middle_m: single(swimmer.links.middle),
         front_m: single(swimmer.links.front),
@@ -159,6 +182,9 @@ pub fn configuration(swimmer: &Swimmer<f64>, servo: &ServoFile) -> Configuration
             TangentialDrag::OverViscosity(value) => {
                 link_protocol::TangentialDrag::OverViscosity(single(value))
             }
+            TangentialDrag::PerLink(_) => {
+                link_protocol::TangentialDrag::OverViscosity(single(swimmer.side_drag()))
+            }
         },
         sphere_radius_m: single(swimmer.sphere_radius),
         max_angle: single(servo.max_angle),
@@ -172,17 +198,20 @@ pub fn configuration(swimmer: &Swimmer<f64>, servo: &ServoFile) -> Configuration
 /// use swimmer_files::{ServoFile, SwimmerFile};
 ///
 /// let [robot, slender] = ["robot", "robot-slender"].map(|name| SwimmerFile::preset(name).unwrap().swimmer);
-/// let configuration = twin::configuration(&robot, &ServoFile::default());
+/// let configuration = twin::configuration(&robot, &ServoFile::default())?;
 /// assert!(twin::is_configured_as(&configuration, &robot));
 /// assert!(!twin::is_configured_as(&configuration, &slender));
+/// # Ok::<(), swimmer_model::UncommonDrag>(())
 /// ```
 pub fn is_configured_as(present: &Configuration, swimmer: &Swimmer<f64>) -> bool {
-    let told = configuration(swimmer, &ServoFile::default());
-    Configuration {
-        max_angle: present.max_angle,
-        max_rate: present.max_rate,
-        ..told
-    } == *present
+    configuration(swimmer, &ServoFile::default()).is_ok_and(|of_swimmer| {
+        let with_limits = Configuration {
+            max_angle: present.max_angle,
+            max_rate: present.max_rate,
+            ..of_swimmer
+        };
+        with_limits == *present
+    })
 }
 
 fn single(value: f64) -> f32 {

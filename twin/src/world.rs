@@ -89,8 +89,12 @@ impl World {
     /// Returns a straight robot at time zero, with position and heading from its seed.
     ///
     /// # Errors
-    /// Lengths and drags form no valid swimmer.
+    /// Lengths and drags form no valid swimmer, or one whose drag the robot's settings cannot hold.
     pub fn new(config: &TwinConfig) -> Result<Self, InvalidSwimmer> {
+        config
+            .swimmer
+            .common_drag()
+            .map_err(InvalidSwimmer::Uncommon)?;
         let mut rng = ChaCha8Rng::seed_from_u64(config.seed);
         rng.set_stream(3);
         let mut draw = |largest: f64| rng.random_range(-largest..largest);

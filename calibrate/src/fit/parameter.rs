@@ -1,6 +1,6 @@
 //! Parameters of a fit: r_s, χ, and the nuisance parameters.
 
-use swimmer_model::Swimmer;
+use swimmer_model::{Link, Swimmer};
 
 /// One number that is fitted, in units of order one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -208,5 +208,5 @@ impl Parameter {
 
 /// c_t/μ of the side links.
 pub(crate) fn over_viscosity(swimmer: &Swimmer<f64>) -> f64 {
-    swimmer.tangential_drag.over_viscosity(swimmer.links.front)
+    swimmer.tangential_drag_of(Link::Front)
 }

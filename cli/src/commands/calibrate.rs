@@ -22,7 +22,7 @@ pub(crate) use self::assessment::AssessmentAnswer;
 pub(crate) use self::further::Shown;
 use self::further::{BeyondFit, FurtherAnswers};
 pub(crate) use self::joints::JointsAnswer;
-use crate::arguments::{gait, load_swimmer, say_if_stale, seconds};
+use crate::arguments::{gait, load_robots_swimmer, say_if_stale, seconds};
 use crate::failure::{Failure, Outcome};
 use crate::new_folder::NewFolder;
 use crate::output::Output;
@@ -307,7 +307,7 @@ impl Calibrate {
                 "{flag} goes with a campaign: a single run is not fitted"
             )));
         }
-        let swimmer = load_swimmer(swimmer)?;
+        let swimmer = load_robots_swimmer(swimmer)?;
         let run = single_run(
             &self.file,
             gait,

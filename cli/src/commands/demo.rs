@@ -24,7 +24,7 @@ use self::race::Race;
 use super::calibrate::{FittedCampaign, MiddleLink, RunCycles, fit_campaign, single_run};
 use super::lab;
 use super::robot::table_of;
-use crate::arguments::load_swimmer;
+use crate::arguments::load_robots_swimmer;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
 use crate::new_folder::NewFolder;
@@ -82,7 +82,7 @@ const LAB: &str = "lab.html";
 impl Demo {
     /// Goes round the loop and answers.
     pub(crate) fn run(self, output: Output) -> Outcome {
-        let truth = load_swimmer(&self.swimmer)?;
+        let truth = load_robots_swimmer(&self.swimmer)?;
         let folder = match &self.output {
             Some(place) => NewFolder::start(place)?,
             None => NewFolder::start_free("demo-out")?,

@@ -93,6 +93,8 @@ impl Plan {
         }
         let file = load_swimmer(&self.swimmer)?;
         let model = crate::arguments::model(&file)?;
+        let regular = file.swimmer.check_regular();
+        regular.map_err(|error| Failure::bad_input(&error))?;
         let mut family = self.family(&file)?;
         let errand = Errand {
             from: Pose::new(self.from.x, self.from.y, self.from.heading.unwrap_or(0.0)),
@@ -115,11 +117,21 @@ impl Plan {
         let off = |share: f64| -> Outcome<[f64; 2]> {
             let mut other = file.clone();
             other.swimmer.chi *= share;
+            other.swimmer.side_chi = other
+                .swimmer
+                .side_chi
+                .map(|both| both.map(|chi| chi * share));
             let model = crate::arguments::model(&other)?;
             let reached = found.reached_by(&model, &errand.from);
             Ok(found.apart_from(&reached))
         };
-        let wrong = [off(0.95)?, off(1.05)?];
+        // χ has no effect in a perfect fluid.
+        let is_viscous = file.swimmer.is_viscous();
+        let wrong = if is_viscous {
+            Some([off(0.95)?, off(1.05)?])
+        } else {
+            None
+        };
         let gaits = match &self.output {
             Some(path) => Some(write_playlist(path, &file, &family, &found)?),
             None => None,

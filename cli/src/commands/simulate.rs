@@ -75,10 +75,14 @@ impl fmt::Display for Text<'_> {
         .row("yaw Δθ", quantity::angle(net.delta_theta_rad))
         .row(
             "efficiency ξ",
-            format!(
-                "{:.8} as parametrised, {:.8} at constant power",
-                net.efficiency, net.efficiency_constant_power
-            ),
+            if net.efficiency.is_nan() {
+                "not defined: it compares with drag, which only a viscous fluid has".to_owned()
+            } else {
+                format!(
+                    "{:.8} as parametrised, {:.8} at constant power",
+                    net.efficiency, net.efficiency_constant_power
+                )
+            },
         )
         .row(
             "links cross",

@@ -19,7 +19,7 @@ pub(crate) struct Swimmers {
 #[derive(Debug, clap::Args)]
 pub(crate) struct Gaits;
 
-/// Optional keys that a preset's file lacks, as comments.
+/// Optional keys that the file of a viscous preset lacks, as comments.
 const OPTIONAL: &str = "
 # What follows is optional; take the # away where you know it.
 #[fluid]                      # for newtons and watts
@@ -48,7 +48,10 @@ impl Swimmers {
                 SwimmerFile::PRESETS.join(", ")
             )));
         };
-        let toml = preset.to_toml() + OPTIONAL;
+        let mut toml = preset.to_toml();
+        if preset.swimmer.is_viscous() {
+            toml.push_str(OPTIONAL);
+        }
         let mut answer = Document::new(toml.trim_end());
         output.answer(answer.key("name", name).key("toml", toml));
         Ok(())
@@ -66,17 +69,23 @@ fn presets() -> Document {
         let what = match name {
             "purcell" => "Purcell's swimmer, three equal slender links",
             "robot" => "the paper's robot, its drag fitted",
+            "perfect-fluid" => {
+                "three ellipses in a perfect fluid (Hatton and Choset 2013; Kanso and others 2005)"
+            }
+            "kinematic-snake" => "three links on wheels (Shammas, Choset and Rizzi 2007)",
             _ => "the paper's robot as slender-body theory has it",
         };
         let links = &swimmer.links;
         let links = [links.front, links.middle, links.back];
+        // Drag is that of a viscous fluid.
+        let chi = swimmer.is_viscous().then_some(swimmer.chi);
         let [front, middle, back] = links.map(quantity::length);
         table.line([
             name.to_owned(),
             front,
             middle,
             back,
-            swimmer.chi.to_string(),
+            chi.map_or_else(|| "–".to_owned(), |chi| chi.to_string()),
             quantity::length(swimmer.sphere_radius),
             what.to_owned(),
         ]);
@@ -84,7 +93,7 @@ fn presets() -> Document {
             "name": name,
             "what": what,
             "links_m": links,
-            "chi": swimmer.chi,
+            "chi": chi,
             "sphere_radius_m": swimmer.sphere_radius,
         });
     }

@@ -18,7 +18,7 @@ use serde::Serialize;
 use twin::{TrackError, TwinConfig, VirtualRobot as _, World, serve};
 
 use self::joints::Joints;
-use crate::arguments::{dead_band, load_swimmer};
+use crate::arguments::{dead_band, load_robots_swimmer};
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
 use crate::new_file::may_be_written;
@@ -105,7 +105,7 @@ impl fmt::Display for Lived {
 impl Twin {
     /// Lives until Ctrl-C.
     pub(crate) fn run(self, output: Output) -> Outcome {
-        let file = load_swimmer(&self.swimmer)?;
+        let file = load_robots_swimmer(&self.swimmer)?;
         self.track.as_deref().map_or(Ok(()), may_be_written)?;
         let places = self.tcp.as_deref().map_or(Ok(Vec::new()), addresses)?;
         let mut config = TwinConfig::new(&file, self.seed);

@@ -80,7 +80,7 @@ pub(super) fn run<S: MultiStart>(
     let clearance = problem.bounds.clearance / problem.swimmer.total_length();
     let barrier = Barrier::new(&problem.bounds, *links, clearance, Region::HORIZON);
     let symmetries = Symmetries {
-        swap: (links.front - links.back).abs() < 1e-12,
+        swap: model.swimmer().is_symmetric(),
         turns: problem.bounds.max_angle.is_none() && !problem.bounds.no_overlap,
     };
     let known = match problem.from {

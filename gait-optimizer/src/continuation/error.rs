@@ -64,6 +64,14 @@ impl ContinuationError {
 impl ContinuationProblem {
     pub(super) fn validate(&self) -> Result<(), ContinuationError> {
         let (parameter, from, to) = (self.parameter, self.from, self.to);
+        self.swimmer.check_regular()?;
+        if self.objective == Objective::Efficiency {
+            self.swimmer.check_efficiency()?;
+        }
+        if matches!(parameter, Parameter::Chi | Parameter::SphereRadius) {
+            let common = self.swimmer.common_drag();
+            common.map_err(InvalidSwimmer::Uncommon)?;
+        }
         let range = |problem| {
             Err(ContinuationError::Range {
                 parameter,

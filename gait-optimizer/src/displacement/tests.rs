@@ -14,6 +14,7 @@ fn three_links(chi: f64) -> Swimmer<f64> {
         chi,
         tangential_drag: TangentialDrag::LogAspect(4.0),
         sphere_radius: 0.0,
+        ..Swimmer::purcell()
     }
 }
 

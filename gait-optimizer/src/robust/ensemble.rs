@@ -60,6 +60,7 @@ impl<'a> Ensemble<'a> {
         uncertainty: &'a Uncertainty,
     ) -> Result<Self, RobustError> {
         uncertainty.validate()?;
+        swimmer.common_drag().map_err(InvalidSwimmer::Uncommon)?;
         if bounds.no_overlap && uncertainty.gain_is_open() {
             return Err(RobustError::Clearance);
         }

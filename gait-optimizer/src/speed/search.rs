@@ -82,6 +82,7 @@ impl SpeedProblem {
         finish: impl Fn(Search<'_>, Watch<'_>) -> R,
     ) -> Result<R, SpeedError> {
         validate(self)?;
+        self.swimmer.check_regular()?;
         let model = Model::new(&self.swimmer.of_unit_length())?;
         refuse_immobile(&model, &self.bounds)?;
         let region = Region::new(&self.bounds, &self.swimmer.links);

@@ -111,6 +111,7 @@ const KINDS: [(Kind, Objective, &str); 3] = [
 pub fn steer(problem: &SteerProblem, watch: Watch<'_>) -> Result<Steering, SpeedError> {
     let of = &problem.of;
     validate(of)?;
+    of.swimmer.check_regular()?;
     let model = Model::new(&of.swimmer.of_unit_length())?;
     refuse_immobile(&model, &of.bounds)?;
     let region = Region::new(&of.bounds, &of.swimmer.links);

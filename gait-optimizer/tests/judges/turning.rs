@@ -295,6 +295,7 @@ fn a_blunt_corner_at_the_start_is_a_corner() {
         chi: 2.5,
         tangential_drag: TangentialDrag::OverViscosity(1.38),
         sphere_radius: 0.02,
+        ..Swimmer::purcell()
     };
     let bounds = Bounds::within(2.0).apart(0.0);
     let found = turning(&TurningProblem { swimmer, bounds }).unwrap();

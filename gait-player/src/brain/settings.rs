@@ -152,6 +152,7 @@ pub(crate) fn check_configuration(
         chi: wanted.chi,
         tangential_drag,
         sphere_radius: wanted.sphere_radius_m,
+        ..Swimmer::purcell()
     };
     // The remaining error is a half thickness that exceeds a link's length.
     Model::new(&swimmer).map_err(|_| Refusal::BadValue { field: 4 })

@@ -4,10 +4,11 @@ use std::ops::Range;
 use std::path::Path;
 
 use serde::Deserialize;
-use swimmer_model::{Links, Swimmer, TangentialDrag};
+use swimmer_model::{Link, Links, Medium, Swimmer, TangentialDrag};
 use toml::Spanned;
 
 use super::{Fluid, ServoFile, SwimmerFile};
+use crate::swimmer_file::per_link::{LinkNumbers, OneOrPerLink};
 use crate::{FileError, Quantity};
 
 type Number = Spanned<f64>;
@@ -17,9 +18,10 @@ type Number = Spanned<f64>;
 struct RawFile {
     name: Option<String>,
     links: Spanned<RawLinks>,
-    drag: RawDrag,
-    sphere: Option<RawSphere>,
-    fluid: Option<RawFluid>,
+    medium: Option<Spanned<RawMedium>>,
+    drag: Option<Spanned<RawDrag>>,
+    sphere: Option<Spanned<RawSphere>>,
+    fluid: Option<Spanned<RawFluid>>,
     servo: Option<RawServo>,
     /// Says where the file comes from, not what swims.
     #[serde(rename = "provenance")]
@@ -37,8 +39,24 @@ struct RawLinks {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
+struct RawMedium {
+    kind: Spanned<Kind>,
+    aspect: Option<Number>,
+    density: Option<Number>,
+}
+
+#[derive(Clone, Copy, PartialEq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Kind {
+    Viscous,
+    Perfect,
+    Wheels,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
 struct RawDrag {
-    chi: Number,
+    chi: Spanned<OneOrPerLink>,
     c_t: RawTangential,
 }
 
@@ -47,13 +65,22 @@ struct RawDrag {
 enum RawTangential {
     LogAspect(Number),
     HalfThickness(Number),
-    OverViscosity(Number),
+    OverViscosity(Spanned<OneOrPerLink>),
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RawSphere {
     radius: Number,
+    on: Option<RawLink>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum RawLink {
+    Middle,
+    Front,
+    Back,
 }
 
 #[derive(Deserialize)]
@@ -96,6 +123,15 @@ impl Source<'_> {
                 format!("{key} = {value} must be a positive number"),
             ))
         }
+    }
+
+    /// Reads a positive number for each link.
+    fn per_link(&self, numbers: &LinkNumbers) -> Result<Links<f64>, FileError> {
+        Ok(Links {
+            middle: self.positive("middle", &numbers.middle)?,
+            front: self.positive("front", &numbers.front)?,
+            back: self.positive("back", &numbers.back)?,
+        })
     }
 
     /// Reads a positive number of a quantity, and refuses a slip of its unit.
@@ -141,14 +177,29 @@ pub(super) fn swimmer_file(text: &str, path: &Path) -> Result<SwimmerFile, FileE
     let raw: RawFile = crate::toml_text::parse(text, path)?;
     let source = Source { text, path };
     let links = links(&source, &raw.links)?;
-    let swimmer = Swimmer {
-        links,
-        chi: source.positive("chi", &raw.drag.chi)?,
-        tangential_drag: tangential(&source, &raw.drag.c_t, &links)?,
-        sphere_radius: match &raw.sphere {
-            Some(sphere) => source.not_negative("radius", &sphere.radius)?,
-            None => 0.0,
-        },
+    let medium = medium(&source, raw.medium.as_ref())?;
+    let swimmer = if medium == Medium::Viscous {
+        let Some(drag) = &raw.drag else {
+            return Err(source.error(&(0..0), "missing field `drag`"));
+        };
+        viscous(&source, links, drag.get_ref(), raw.sphere.as_ref())?
+    } else {
+        let unused = [
+            ("drag", raw.drag.as_ref().map(Spanned::span)),
+            ("sphere", raw.sphere.as_ref().map(Spanned::span)),
+            ("fluid", raw.fluid.as_ref().map(Spanned::span)),
+        ];
+        if let Some((table, Some(span))) = unused.into_iter().find(|(_, span)| span.is_some()) {
+            let problem = format!(
+                "[{table}] has an effect in a viscous fluid only: leave it out, or write kind = \"viscous\" in [medium]"
+            );
+            return Err(source.error(&span, problem));
+        }
+        Swimmer {
+            links,
+            medium,
+            ..Swimmer::purcell()
+        }
     };
     swimmer.validate().map_err(|invalid| {
         source.error(
@@ -159,8 +210,99 @@ pub(super) fn swimmer_file(text: &str, path: &Path) -> Result<SwimmerFile, FileE
     Ok(SwimmerFile {
         name: raw.name.unwrap_or_else(|| stem(path)),
         swimmer,
-        fluid: raw.fluid.map(|raw| fluid(&source, &raw)).transpose()?,
+        fluid: raw
+            .fluid
+            .map(|raw| fluid(&source, raw.get_ref()))
+            .transpose()?,
         servo: raw.servo.map(|raw| servo(&source, &raw)).transpose()?,
+    })
+}
+
+fn medium(source: &Source<'_>, raw: Option<&Spanned<RawMedium>>) -> Result<Medium<f64>, FileError> {
+    let Some(table) = raw else {
+        return Ok(Medium::Viscous);
+    };
+    let RawMedium {
+        kind,
+        aspect,
+        density,
+    } = table.get_ref();
+    match kind.get_ref() {
+        Kind::Perfect => {
+            let (Some(aspect), Some(density)) = (aspect, density) else {
+                let problem = "a perfect fluid needs `aspect`, half width over half length of the links, and `density` in kg/m^3";
+                return Err(source.error(&table.span(), problem));
+            };
+            let value = source.positive("aspect", aspect)?;
+            if value > 1.0 {
+                let problem = format!(
+                    "aspect = {value} makes links wider than long: it is half width over half length, at most 1"
+                );
+                return Err(source.error(&aspect.span(), problem));
+            }
+            Ok(Medium::Perfect {
+                aspect: value,
+                density: source.positive("density", density)?,
+            })
+        }
+        other => {
+            let unused = [("aspect", aspect), ("density", density)];
+            for (key, number) in unused {
+                if let Some(number) = number {
+                    let problem = format!(
+                        "{key} has an effect in a perfect fluid only: leave it out, or write kind = \"perfect\""
+                    );
+                    return Err(source.error(&number.span(), problem));
+                }
+            }
+            Ok(if *other == Kind::Wheels {
+                Medium::Wheels
+            } else {
+                Medium::Viscous
+            })
+        }
+    }
+}
+
+fn viscous(
+    source: &Source<'_>,
+    links: Links<f64>,
+    drag: &RawDrag,
+    sphere: Option<&Spanned<RawSphere>>,
+) -> Result<Swimmer<f64>, FileError> {
+    let (chi, side_chi) = match drag.chi.get_ref() {
+        OneOrPerLink::One(value) => {
+            let number = Spanned::new(drag.chi.span(), *value);
+            (source.positive("chi", &number)?, None)
+        }
+        OneOrPerLink::PerLink(numbers) => {
+            let values = source.per_link(numbers)?;
+            (values.middle, Some([values.front, values.back]))
+        }
+    };
+    let (sphere_radius, sphere_on) = match sphere.map(Spanned::get_ref) {
+        Some(sphere) => (
+            source.not_negative("radius", &sphere.radius)?,
+            match sphere.on {
+                None | Some(RawLink::Middle) => Link::Middle,
+                Some(RawLink::Front) => Link::Front,
+                Some(RawLink::Back) => Link::Back,
+            },
+        ),
+        None => (0.0, Link::Middle),
+    };
+    Ok(Swimmer {
+        links,
+        chi,
+        side_chi,
+        tangential_drag: tangential(source, &drag.c_t, &links)?,
+        sphere_radius,
+        sphere_on: if sphere_radius > 0.0 {
+            sphere_on
+        } else {
+            Link::Middle
+        },
+        medium: Medium::Viscous,
     })
 }
 
@@ -208,9 +350,13 @@ fn tangential(
             }
             TangentialDrag::HalfThickness(thickness)
         }
-        RawTangential::OverViscosity(number) => {
-            TangentialDrag::OverViscosity(source.positive("over_viscosity", number)?)
-        }
+        RawTangential::OverViscosity(value) => match value.get_ref() {
+            OneOrPerLink::One(number) => {
+                let number = Spanned::new(value.span(), *number);
+                TangentialDrag::OverViscosity(source.positive("over_viscosity", &number)?)
+            }
+            OneOrPerLink::PerLink(numbers) => TangentialDrag::PerLink(source.per_link(numbers)?),
+        },
     })
 }
 

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use swimmer_model::TangentialDrag;
+use swimmer_model::{Link, Links, Medium, Swimmer, TangentialDrag};
 
 use super::SwimmerFile;
 
@@ -29,31 +29,21 @@ fn write_tables(text: &mut String, file: &SwimmerFile) -> std::fmt::Result {
         writeln!(text, "front = {:?}             # m", links.front)?;
         writeln!(text, "back = {:?}              # m", links.back)?;
     }
-    writeln!(text, "\n[drag]")?;
-    writeln!(text, "chi = {:?}               # c_n / c_t", swimmer.chi)?;
-    match swimmer.tangential_drag {
-        TangentialDrag::LogAspect(value) => {
+    match swimmer.medium {
+        Medium::Viscous => write_drag(text, swimmer)?,
+        Medium::Perfect { aspect, density } => {
+            writeln!(text, "\n[medium]")?;
+            writeln!(text, "kind = \"perfect\"")?;
             writeln!(
                 text,
-                "c_t = {{ log_aspect = {value:?} }}      # common: c_t = 2 pi mu / log_aspect"
+                "aspect = {aspect:?}              # half width over half length"
             )?;
-        }
-        TangentialDrag::HalfThickness(value) => {
             writeln!(
                 text,
-                "c_t = {{ half_thickness = {value:?} }}  # m, per link: c_t = 2 pi mu / ln(l/a)"
+                "density = {density:?}          # kg/m^3, of fluid and body"
             )?;
         }
-        TangentialDrag::OverViscosity(value) => {
-            writeln!(
-                text,
-                "c_t = {{ over_viscosity = {value:?} }}  # common: c_t / mu"
-            )?;
-        }
-    }
-    if swimmer.sphere_radius > 0.0 {
-        writeln!(text, "\n[sphere]")?;
-        writeln!(text, "radius = {:?}            # m", swimmer.sphere_radius)?;
+        Medium::Wheels => writeln!(text, "\n[medium]\nkind = \"wheels\"")?,
     }
     if let Some(fluid) = &file.fluid {
         writeln!(text, "\n[fluid]")?;
@@ -77,6 +67,75 @@ fn write_tables(text: &mut String, file: &SwimmerFile) -> std::fmt::Result {
         if let Some(rate) = servo.no_load_rate {
             writeln!(text, "no_load_rate = {rate:?}      # rad/s")?;
         }
+    }
+    Ok(())
+}
+
+/// Inline table of one number for each link.
+fn per_link(values: &Links<f64>) -> String {
+    let Links {
+        middle,
+        front,
+        back,
+    } = values;
+    format!("{{ middle = {middle:?}, front = {front:?}, back = {back:?} }}")
+}
+
+/// The `[drag]` table, and `[sphere]` if there is one.
+fn write_drag(text: &mut String, swimmer: &Swimmer<f64>) -> std::fmt::Result {
+    writeln!(text, "\n[drag]")?;
+    let chi = swimmer.chi;
+    match swimmer.side_chi {
+        None => writeln!(text, "chi = {chi:?}               # c_n / c_t")?,
+        Some([front, back]) => {
+            let middle = chi;
+            let values = per_link(&Links {
+                middle,
+                front,
+                back,
+            });
+            writeln!(text, "chi = {values}  # c_n / c_t of each link")?;
+        }
+    }
+    match swimmer.tangential_drag {
+        TangentialDrag::LogAspect(value) => {
+            writeln!(
+                text,
+                "c_t = {{ log_aspect = {value:?} }}      # common: c_t = 2 pi mu / log_aspect"
+            )?;
+        }
+        TangentialDrag::HalfThickness(value) => {
+            writeln!(
+                text,
+                "c_t = {{ half_thickness = {value:?} }}  # m, per link: c_t = 2 pi mu / ln(l/a)"
+            )?;
+        }
+        TangentialDrag::OverViscosity(value) => {
+            writeln!(
+                text,
+                "c_t = {{ over_viscosity = {value:?} }}  # common: c_t / mu"
+            )?;
+        }
+        TangentialDrag::PerLink(values) => {
+            let values = per_link(&values);
+            writeln!(
+                text,
+                "c_t = {{ over_viscosity = {values} }}  # c_t / mu of each link"
+            )?;
+        }
+    }
+    if swimmer.sphere_radius > 0.0 {
+        writeln!(text, "\n[sphere]")?;
+        writeln!(text, "radius = {:?}            # m", swimmer.sphere_radius)?;
+        let on = match swimmer.sphere_on {
+            Link::Middle => return Ok(()),
+            Link::Front => "front",
+            Link::Back => "back",
+        };
+        writeln!(
+            text,
+            "on = \"{on}\"              # the link at whose centre it sits"
+        )?;
     }
     Ok(())
 }

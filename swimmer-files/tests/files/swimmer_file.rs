@@ -4,7 +4,7 @@ use std::path::Path;
 
 use proptest::prelude::*;
 use swimmer_files::{Fluid, ServoFile, SwimmerFile};
-use swimmer_model::{Links, Swimmer, TangentialDrag};
+use swimmer_model::{Link, Links, Medium, Swimmer, TangentialDrag};
 
 const EXAMPLE: &str = r#"name = "our robot"
 [links]
@@ -140,6 +140,167 @@ fn a_fit_is_saved_and_read() {
     assert_ne!(back.hash(), read(EXAMPLE).unwrap().hash());
 }
 
+const UNEQUAL: &str = r#"name = "uneven"
+[links]
+middle = 0.071
+front = 0.137
+back = 0.120
+[drag]
+chi = { middle = 3.6, front = 2.8, back = 2.9 }
+c_t = { over_viscosity = { middle = 1.4, front = 1.3, back = 1.2 } }
+[sphere]
+radius = 0.0692
+on = "back"
+"#;
+
+const PERFECT: &str = r#"[links]
+middle = 1.0
+side = 1.0
+[medium]
+kind = "perfect"
+aspect = 0.1
+density = 1000.0
+"#;
+
+#[test]
+fn links_of_their_own() {
+    let swimmer = read(UNEQUAL).unwrap().swimmer;
+    let links = Links {
+        middle: 0.071,
+        front: 0.137,
+        back: 0.12,
+    };
+    let c_t = Links {
+        middle: 1.4,
+        front: 1.3,
+        back: 1.2,
+    };
+    assert_eq!(
+        swimmer,
+        Swimmer {
+            links,
+            chi: 3.6,
+            side_chi: Some([2.8, 2.9]),
+            tangential_drag: TangentialDrag::PerLink(c_t),
+            sphere_radius: 0.0692,
+            sphere_on: Link::Back,
+            medium: Medium::Viscous,
+        }
+    );
+    let whole = UNEQUAL.replace("middle = 3.6, front = 2.8", "middle = 4, front = 3");
+    assert_eq!(read(&whole).unwrap().swimmer.chi, 4.0);
+}
+
+#[test]
+fn other_media() {
+    assert_eq!(read(PERFECT).unwrap().swimmer, Swimmer::perfect_fluid());
+    let wheels = "[links]\nmiddle = 1\nside = 1\n[medium]\nkind = \"wheels\"\n";
+    assert_eq!(read(wheels).unwrap().swimmer, Swimmer::kinematic_snake());
+    let viscous = format!("{UNEQUAL}[medium]\nkind = \"viscous\"\n");
+    assert_eq!(read(&viscous).unwrap(), read(UNEQUAL).unwrap());
+}
+
+#[test]
+fn every_preset_is_its_file() {
+    for name in SwimmerFile::PRESETS {
+        let preset = SwimmerFile::preset(name).unwrap();
+        assert_eq!(read(&preset.to_toml()).unwrap(), preset);
+    }
+}
+
+#[test]
+fn mistakes_in_links_and_media_have_a_place() {
+    let cases = [
+        (
+            UNEQUAL,
+            "middle = 3.6, ",
+            "",
+            (7, 7),
+            "missing field `middle`",
+        ),
+        (
+            UNEQUAL,
+            "front = 2.8",
+            "side = 2.8",
+            (7, 23),
+            "unknown field `side`",
+        ),
+        (UNEQUAL, "front = 2.8", "front = -2.8", (7, 31), "positive"),
+        (UNEQUAL, "back = 1.2", "back = 0.0", (8, 62), "positive"),
+        (
+            UNEQUAL,
+            "\"back\"",
+            "\"tail\"",
+            (11, 6),
+            "expected one of `middle`, `front`, `back`",
+        ),
+        (
+            PERFECT,
+            "\"perfect\"",
+            "\"ideal\"",
+            (5, 8),
+            "`viscous`, `perfect`, `wheels`",
+        ),
+        (PERFECT, "aspect = 0.1\n", "", (4, 1), "`aspect`"),
+        (
+            PERFECT,
+            "aspect = 0.1",
+            "aspect = 1.5",
+            (6, 10),
+            "wider than long",
+        ),
+        (
+            PERFECT,
+            "density = 1000.0",
+            "density = 0",
+            (7, 11),
+            "positive",
+        ),
+        (
+            PERFECT,
+            "\"perfect\"",
+            "\"wheels\"",
+            (6, 10),
+            "in a perfect fluid only",
+        ),
+        (
+            PERFECT,
+            "\"perfect\"\naspect = 0.1\ndensity = 1000.0",
+            "\"viscous\"",
+            (1, 1),
+            "missing field `drag`",
+        ),
+        (
+            PERFECT,
+            "[medium]",
+            "[drag]\nchi = 2\nc_t = { log_aspect = 4 }\n[medium]",
+            (4, 1),
+            "[drag] has an effect in a viscous fluid only",
+        ),
+        (
+            PERFECT,
+            "[medium]",
+            "[sphere]\nradius = 0.1\n[medium]",
+            (4, 1),
+            "[sphere] has an effect",
+        ),
+        (
+            PERFECT,
+            "[medium]",
+            "[fluid]\nkinematic_viscosity = 1\ndensity = 1\n[medium]",
+            (4, 1),
+            "[fluid] has an effect",
+        ),
+    ];
+    for (text, good, bad, place, message) in cases {
+        let broken = text.replacen(good, bad, 1);
+        assert_ne!(text, broken, "{good}");
+        let error = read(&broken).expect_err(bad);
+        assert_eq!(error.place(), Some(place), "{bad}: {error}");
+        assert!(error.to_string().contains(message), "{bad}: {error}");
+    }
+}
+
 fn any_length() -> impl Strategy<Value = f64> {
     (1e-3..10.0).prop_map(|length: f64| length)
 }
@@ -151,18 +312,42 @@ prop_compose! {
         chi in 1.0..10.0, form in 0..3, drag in 0.5..9.0, sphere in prop_oneof![Just(0.0), 1e-4..2.0],
         fluid in proptest::option::of((1e-6..1.0, 1.0..2000.0)),
         servo in proptest::option::of((0.1..3.0, 0.1..9.0, 0.0..0.3, 1e-3..0.1, 1000.0..2000.0)),
+        side_chi in proptest::option::of((0.5..9.0, 0.5..9.0)), own in any::<bool>(), on in 0..3,
+        medium in 0..6, (aspect, density) in (1e-3..1.0, 1e-3..1e4),
     ) -> SwimmerFile {
+        let links = Links { middle, front, back: if alike { front } else { back } };
+        let medium = match medium {
+            0 => Medium::Perfect { aspect, density },
+            1 => Medium::Wheels,
+            _ => Medium::Viscous,
+        };
+        if medium != Medium::Viscous {
+            return SwimmerFile {
+                name,
+                swimmer: Swimmer { links, medium, ..Swimmer::purcell() },
+                fluid: None,
+                servo: None,
+            };
+        }
         SwimmerFile {
             name,
             swimmer: Swimmer {
-                links: Links { middle, front, back: if alike { front } else { back } },
+                links,
                 chi,
+                side_chi: side_chi.map(Into::into),
+                sphere_on: match on {
+                    1 if sphere > 0.0 => Link::Front,
+                    2 if sphere > 0.0 => Link::Back,
+                    _ => Link::Middle,
+                },
                 tangential_drag: match form {
+                    _ if own => TangentialDrag::PerLink(links),
                     0 => TangentialDrag::LogAspect(drag),
                     1 => TangentialDrag::HalfThickness(drag * 1e-5),
                     _ => TangentialDrag::OverViscosity(drag),
                 },
                 sphere_radius: sphere,
+                ..Swimmer::purcell()
             },
             fluid: fluid.map(|(kinematic_viscosity, density)| Fluid { kinematic_viscosity, density }),
             servo: servo.map(|(max_angle, max_rate, dead_band, slope_rad_per_us, centre_us)| ServoFile {

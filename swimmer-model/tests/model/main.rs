@@ -7,6 +7,7 @@ mod crossing;
 mod derivatives;
 mod gaits;
 mod hyper_dual;
+mod media;
 mod numbers;
 mod precision;
 mod random;

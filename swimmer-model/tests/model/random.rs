@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use swimmer_model::{Harmonic, Links, Swimmer, TangentialDrag};
+use swimmer_model::{Harmonic, Link, Links, Medium, Swimmer, TangentialDrag};
 
 /// A property is tried on this many random cases, the same in every run; `PROPTEST_RNG_SEED` chooses others.
 pub(crate) fn cases(cases: u32) -> ProptestConfig {
@@ -45,6 +45,7 @@ fn swimmer_with(links: impl Strategy<Value = Links<f64>>) -> impl Strategy<Value
             chi,
             tangential_drag,
             sphere_radius,
+            ..Swimmer::purcell()
         })
     })
 }
@@ -60,6 +61,41 @@ pub(crate) fn swimmer() -> impl Strategy<Value = Swimmer<f64>> {
         }
     });
     swimmer_with(links)
+}
+
+/// Any swimmer of any kind with a positive definite W: drag coefficients of its own for each link, the sphere on any link, or a
+/// perfect fluid.
+pub(crate) fn any_swimmer() -> impl Strategy<Value = Swimmer<f64>> {
+    let own = || (0.4..8.0, 0.4..8.0, 0.4..8.0);
+    let on = prop_oneof![Just(Link::Middle), Just(Link::Front), Just(Link::Back)];
+    let aspect = prop_oneof![0.02..1.0, Just(1.0)];
+    (swimmer(), 0..4, own(), own(), on, (aspect, 1e-2..1e4)).prop_map(
+        |(swimmer, kind, (_, front, back), (c0, c1, c2), sphere_on, (aspect, density))| {
+            let own_chi = Swimmer {
+                side_chi: Some([front, back]),
+                sphere_on,
+                ..swimmer
+            };
+            let own_drag = TangentialDrag::PerLink(Links {
+                middle: c0,
+                front: c1,
+                back: c2,
+            });
+            match kind {
+                0 => swimmer,
+                1 => own_chi,
+                2 => Swimmer {
+                    tangential_drag: own_drag,
+                    ..own_chi
+                },
+                _ => Swimmer {
+                    sphere_radius: 0.0,
+                    medium: Medium::Perfect { aspect, density },
+                    ..swimmer
+                },
+            }
+        },
+    )
 }
 
 /// A swimmer with equal side links.

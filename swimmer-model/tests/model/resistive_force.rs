@@ -1,10 +1,10 @@
 //! A second formulation of the physics, in the world's frame and straight from the paper's equation (1): velocities of
 //! the links' centres, forces along tangents and normals, torques about the middle link's centre. It shares no matrix
-//! with the crate.
+//! with the crate. In a perfect fluid the same sums, with masses in place of drag coefficients, are minus the momenta.
 
 use nalgebra::{Matrix3, Matrix3x2, Vector2, Vector3};
 use std::f64::consts::PI;
-use swimmer_model::Swimmer;
+use swimmer_model::{Link, Medium, Swimmer, TangentialDrag};
 
 /// Load of the fluid on the swimmer.
 pub(crate) struct Drag {
@@ -14,6 +14,45 @@ pub(crate) struct Drag {
     pub(crate) power: f64,
     /// Sum of the magnitudes of all contributions to the load, to measure its vanishing against.
     pub(crate) magnitude: Vector3<f64>,
+}
+
+/// Coefficients of a link of this length against motion along it, across it, and against rotation.
+fn coefficients(swimmer: &Swimmer<f64>, link: Link, length: f64) -> [f64; 3] {
+    match swimmer.medium {
+        Medium::Viscous => {
+            let ct = match swimmer.tangential_drag {
+                TangentialDrag::LogAspect(log_aspect) => 2.0 * PI / log_aspect,
+                TangentialDrag::HalfThickness(half) => 2.0 * PI / (length / half).ln(),
+                TangentialDrag::OverViscosity(value) => value,
+                TangentialDrag::PerLink(values) => match link {
+                    Link::Middle => values.middle,
+                    Link::Front => values.front,
+                    Link::Back => values.back,
+                },
+            };
+            let chi = match (link, swimmer.side_chi) {
+                (Link::Front, Some(own)) => own[0],
+                (Link::Back, Some(own)) => own[1],
+                _ => swimmer.chi,
+            };
+            [
+                ct * length,
+                chi * ct * length,
+                chi * ct * length.powi(3) / 12.0,
+            ]
+        }
+        Medium::Perfect { aspect, density } => {
+            let (a, b) = (length / 2.0, aspect * length / 2.0);
+            let mass = density * PI * a * b;
+            [
+                mass + density * PI * b.powi(2),
+                mass + density * PI * a.powi(2),
+                mass * (a.powi(2) + b.powi(2)) / 4.0
+                    + density * PI * (a.powi(2) - b.powi(2)).powi(2) / 8.0,
+            ]
+        }
+        Medium::Wheels => [0.0, 1.0, 0.0],
+    }
 }
 
 /// Drag on a swimmer that moves at `velocity` = (ẋ, ẏ, θ̇) with joint rates `rate`.
@@ -30,14 +69,16 @@ pub(crate) fn drag(
     let t0 = direction(theta);
     // Per link: length, angle, angular velocity, joint on the middle link (±l₀/2 along it).
     let places = [
-        (links.middle, theta, velocity.z, None),
+        (Link::Middle, links.middle, theta, velocity.z, None),
         (
+            Link::Front,
             links.front,
             theta + phi.x,
             velocity.z + rate.x,
             Some(links.middle / 2.0),
         ),
         (
+            Link::Back,
             links.back,
             theta + PI - phi.y,
             velocity.z - rate.y,
@@ -58,7 +99,7 @@ pub(crate) fn drag(
             sum.power -= force.dot(&v) + torque * omega;
         };
     let v0 = velocity.xy();
-    for (length, alpha, omega, joint) in places {
+    for (link, length, alpha, omega, joint) in places {
         let t = direction(alpha);
         let n = turned(t);
         let (arm, v) = match joint {
@@ -71,19 +112,20 @@ pub(crate) fn drag(
                 )
             }
         };
-        let ct = swimmer.tangential_drag.over_viscosity(length);
-        let cn = swimmer.chi * ct;
-        let force = -t * (ct * length * v.dot(&t)) - n * (cn * length * v.dot(&n));
-        add(arm, force, -cn * length.powi(3) / 12.0 * omega, v, omega);
+        let [along, across, round] = coefficients(swimmer, link, length);
+        let force = -t * (along * v.dot(&t)) - n * (across * v.dot(&n));
+        add(arm, force, -round * omega, v, omega);
+        if swimmer.sphere_on == link {
+            let r = swimmer.sphere_radius;
+            add(
+                arm,
+                -v * (6.0 * PI * r),
+                -8.0 * PI * r.powi(3) * omega,
+                v,
+                omega,
+            );
+        }
     }
-    let r = swimmer.sphere_radius;
-    add(
-        Vector2::zeros(),
-        -v0 * (6.0 * PI * r),
-        -8.0 * PI * r.powi(3) * velocity.z,
-        v0,
-        velocity.z,
-    );
     sum
 }
 

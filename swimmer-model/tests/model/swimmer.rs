@@ -1,10 +1,10 @@
 //! Valid and invalid swimmers, and poses.
 
 use crate::near;
-use crate::random::{cases, swimmer};
+use crate::random::{any_swimmer, cases};
 use nalgebra::{Vector2, Vector3};
 use proptest::prelude::*;
-use swimmer_model::{InvalidSwimmer, Links, Model, Pose, Swimmer, TangentialDrag};
+use swimmer_model::{InvalidSwimmer, Links, Medium, Model, Pose, Swimmer, TangentialDrag};
 
 #[test]
 fn presets_are_valid() {
@@ -12,6 +12,8 @@ fn presets_are_valid() {
         Swimmer::<f64>::purcell(),
         Swimmer::robot(),
         Swimmer::robot_slender(),
+        Swimmer::perfect_fluid(),
+        Swimmer::kinematic_snake(),
     ] {
         assert_eq!(swimmer.validate(), Ok(()));
         assert_eq!(swimmer.cast::<f32>().validate(), Ok(()));
@@ -56,6 +58,33 @@ fn parameters_out_of_range_are_refused_with_their_numbers() {
         Swimmer {
             sphere_radius: f64::NAN,
             ..good
+        },
+        Swimmer {
+            side_chi: Some([2.0, 0.0]),
+            ..good
+        },
+        with_drag(TangentialDrag::PerLink(Links {
+            middle: 1.0,
+            front: -1.0,
+            back: 1.0,
+        })),
+        Swimmer {
+            medium: Medium::Wheels,
+            ..good
+        },
+        Swimmer {
+            medium: Medium::Perfect {
+                aspect: 1.1,
+                density: 1.0,
+            },
+            ..Swimmer::purcell()
+        },
+        Swimmer {
+            medium: Medium::Perfect {
+                aspect: 0.1,
+                density: f64::NAN,
+            },
+            ..Swimmer::purcell()
         },
     ];
     for swimmer in bad {
@@ -120,7 +149,7 @@ proptest! {
     }
 
     #[test]
-    fn casting_keeps_the_swimmer(swimmer in swimmer()) {
+    fn casting_keeps_the_swimmer(swimmer in any_swimmer()) {
         prop_assert_eq!(swimmer.cast::<f64>(), swimmer);
     }
 }

@@ -1,6 +1,6 @@
 //! Symmetries and scaling laws of connection and power.
 
-use crate::random::{cases, shape, swimmer};
+use crate::random::{any_swimmer, cases, shape, swimmer};
 use nalgebra::{Matrix2, Matrix3x2, Vector2};
 use proptest::prelude::*;
 use swimmer_model::{Links, Model, Swimmer, TangentialDrag};
@@ -34,7 +34,7 @@ proptest! {
 
     /// Mirror in the middle link's axis: φ → −φ, y → −y, θ → −θ.
     #[test]
-    fn mirrored_shapes_move_in_the_mirror(swimmer in swimmer(), phi in shape()) {
+    fn mirrored_shapes_move_in_the_mirror(swimmer in any_swimmer(), phi in shape()) {
         let ((a, w), (mirrored_a, mirrored_w)) = (both(&swimmer, phi), both(&swimmer, -phi));
         close(&mirrored_a, &signed(&a, [-1.0, 1.0, 1.0]), 1e-12)?;
         close(&mirrored_w, &w, 1e-12)?;
@@ -42,9 +42,8 @@ proptest! {
 
     /// Mirror across the middle link: the side links change places, x → −x, θ → −θ.
     #[test]
-    fn swapped_links_move_backwards(swimmer in swimmer(), phi in shape()) {
-        let Links { middle, front, back } = swimmer.links;
-        let swapped = Swimmer { links: Links { middle, front: back, back: front }, ..swimmer };
+    fn swapped_links_move_backwards(swimmer in any_swimmer(), phi in shape()) {
+        let swapped = swimmer.exchanged();
         let ((a, w), (swapped_a, swapped_w)) = (both(&swimmer, phi), both(&swapped, phi.yx()));
         let columns = Matrix2::new(0.0, 1.0, 1.0, 0.0);
         close(&(swapped_a * columns), &signed(&a, [-1.0, 1.0, -1.0]), TOLERANCE)?;
@@ -53,9 +52,8 @@ proptest! {
 
     /// Half a turn: side links swapped and bent the other way, x → −x, y → −y.
     #[test]
-    fn half_a_turn_swaps_the_links(swimmer in swimmer(), phi in shape()) {
-        let Links { middle, front, back } = swimmer.links;
-        let turned = Swimmer { links: Links { middle, front: back, back: front }, ..swimmer };
+    fn half_a_turn_swaps_the_links(swimmer in any_swimmer(), phi in shape()) {
+        let turned = swimmer.exchanged();
         let ((a, w), (turned_a, turned_w)) = (both(&swimmer, phi), both(&turned, -phi.yx()));
         let columns = Matrix2::new(0.0, -1.0, -1.0, 0.0);
         close(&(turned_a * columns), &signed(&a, [-1.0, -1.0, 1.0]), TOLERANCE)?;

@@ -94,7 +94,7 @@ fn greeted(mut port: Port) -> Robot<Port> {
     let mut robot = Robot::connect(port, 1).unwrap();
     let file = SwimmerFile::preset("robot").unwrap();
     robot
-        .configure(configuration(&file.swimmer, &ServoFile::default()))
+        .configure(configuration(&file.swimmer, &ServoFile::default()).unwrap())
         .unwrap();
     robot
 }

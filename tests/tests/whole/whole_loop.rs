@@ -178,7 +178,7 @@ fn model_tank_and_brain_agree_on_a_stroke() {
     // The brain knows the truth here, and its pose follows the commanded angles: no servo comes between.
     let mut robot = Robot::connect(twin_port(&file, 5), 5).unwrap();
     robot
-        .configure(configuration(&file.swimmer, &ServoFile::default()))
+        .configure(configuration(&file.swimmer, &ServoFile::default()).unwrap())
         .unwrap();
     play(&mut robot, &gait, 1);
     let on_board = robot.telemetry().unwrap().pose;

@@ -47,7 +47,7 @@ impl Laboratory {
 
     /// Tells the robot its body, for the pose that it predicts on board.
     pub(super) fn configure(&mut self, body: &SwimmerFile, servo: &ServoFile) -> Outcome {
-        Ok(self.robot.configure(configuration(&body.swimmer, servo))?)
+        Ok(self.robot.configure(configuration(&body.swimmer, servo)?)?)
     }
 
     /// Sends a table; the robot checks it.

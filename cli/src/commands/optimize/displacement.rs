@@ -5,6 +5,7 @@ use gait_optimizer::{
 };
 
 use super::answer::{say_if_beyond, tell_quarter};
+use super::closed::Closed;
 use super::robust::{Robustly, refused, robust_gait};
 use super::timing::ServoTiming;
 use super::{Found, Objective, Task};
@@ -15,7 +16,7 @@ use crate::playable::searched;
 
 /// Find the simple gait of most displacement per cycle by the maximum principle, with its certificate
 ///
-/// Simple closed curves with the paper's two symmetries. The farthest gait of either sense, run so that it swims forwards (X > 0):
+/// Simple closed curves with the paper's two symmetries, or any simple closed curve if the side links differ. The farthest gait of either sense, run so that it swims forwards (X > 0):
 /// if that is clockwise, the arcs and the start angle printed are those of the counter-clockwise quarter. --sign takes the
 /// local optimum of one sense instead, run counter-clockwise as in the paper: + for its gaits (a) and (b), - for (c) and (d).
 #[derive(Debug, clap::Args)]
@@ -45,6 +46,22 @@ impl Objective for Displacement {
             return robust_gait(task, ("displacement", "X/L"), found, &self.timing);
         }
         let is_playable = self.bounds.playable();
+        if !task.file.swimmer.is_symmetric() {
+            if self.sign.is_some() {
+                return Err(Failure::BadInput(
+                    "--sign is that of gaits with the paper's symmetries, and the side links of this swimmer differ: leave it out"
+                        .to_owned(),
+                ));
+            }
+            let objective = swimmer_files::Objective::Displacement;
+            let found = Closed::search(task, objective, problem.bounds, is_playable)?;
+            say_if_beyond(task, found.gait());
+            let timed = self.timing.of(task, found.gait())?;
+            let title = format!("{}, a local optimum of displacement", task.file.name);
+            let mut answer = Document::new(title);
+            found.tell(&mut answer, objective);
+            return Ok(Found::gait(answer, task, found.gait(), timed));
+        }
         let search = |bounds| Ok(displacement(&DisplacementProblem { bounds, ..problem })?);
         let gait = task.timed(|| {
             let robot = (&task.file, is_playable);

@@ -5,8 +5,10 @@ use collocation::CollocationError;
 use gait_optimizer::{
     Branch, EfficiencyError, EfficiencyProblem, Method, OptimalGait, efficiency, robust_efficiency,
 };
+use swimmer_files::Bounds;
 
 use super::answer::{say_if_beyond, tell_quarter};
+use super::closed::Closed;
 use super::robust::{Robustly, refused, robust_gait};
 use super::timing::{ServoTiming, Timed};
 use super::{Found, Objective, Task};
@@ -22,7 +24,7 @@ const ROBUST_ORDER: usize = 6;
 
 /// Find a gait of most Lighthill efficiency by the maximum principle, with its certificate
 ///
-/// Closed curves with the paper's two symmetries, run counter-clockwise at constant power. No guess is needed.
+/// Closed curves with the paper's two symmetries, or any closed curve if the side links differ, run counter-clockwise at constant power. No guess is needed.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Efficiency {
     /// Which optimum: small has X > 0, large has X < 0 and a start angle above 2 rad
@@ -85,6 +87,9 @@ impl Objective for Efficiency {
                     .to_owned(),
             ));
         }
+        if !task.file.swimmer.is_symmetric() {
+            return self.without_symmetry(task, problem.bounds);
+        }
         let search = |bounds| {
             let problem = EfficiencyProblem { bounds, ..problem };
             match self.method {
@@ -98,6 +103,34 @@ impl Objective for Efficiency {
         let timed = self.timing.of(task, &gait)?;
         let answer = told(&task.file.name, &gait, timed.as_ref());
         Ok(Found::gait(answer, task, &gait, timed))
+    }
+}
+
+impl Efficiency {
+    /// Best gait of the closed-curve search, for side links that differ.
+    fn without_symmetry(&self, task: &Task, bounds: Bounds) -> Outcome<Found> {
+        if matches!(self.gait, Which::Large) || !matches!(self.method, How::Auto) {
+            return Err(Failure::BadInput(
+                "--gait large and --method are of gaits with the paper's symmetries, and the side links of this swimmer differ: \
+                 leave them out"
+                    .to_owned(),
+            ));
+        }
+        let objective = swimmer_files::Objective::Efficiency;
+        let found = Closed::search(task, objective, bounds, self.bounds.playable())?;
+        let gait = found.gait();
+        say_if_beyond(task, gait);
+        let timed = self.timing.of(task, gait)?;
+        let name = &task.file.name;
+        let mut answer = Document::new(format!("{name}, a local optimum of efficiency"));
+        let as_written = timed
+            .as_ref()
+            .map_or(gait.efficiency, |timed| timed.efficiency);
+        answer
+            .key("efficiency", as_written)
+            .row("efficiency ξ", format!("{as_written:.12}"));
+        found.tell(&mut answer, objective);
+        Ok(Found::gait(answer, task, gait, timed))
     }
 }
 
@@ -166,7 +199,7 @@ impl From<CollocationError> for Failure {
 mod tests {
     use std::cell::Cell;
 
-    use swimmer_files::{AnyGait, Bounds};
+    use swimmer_files::AnyGait;
     use swimmer_model::{Model, Swimmer, Tolerance, swim};
 
     use super::*;

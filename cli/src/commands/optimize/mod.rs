@@ -2,6 +2,7 @@
 //! objective has a file with its options, its search and the rows of its output.
 
 pub(crate) mod answer;
+mod closed;
 mod displacement;
 mod efficiency;
 mod front;

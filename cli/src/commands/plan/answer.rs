@@ -5,12 +5,12 @@ use std::path::PathBuf;
 use crate::document::{Document, object};
 use crate::quantity;
 
-/// The answer. The plan's swimmer with χ 5 % lower, and higher, comes this far \[m, rad\] from where the plan leads; the gaits are
+/// The answer. The plan's swimmer with χ 5 % lower, and higher, comes this far \[m, rad\] from where the plan leads, if it has a χ; the gaits are
 /// named by their files, where the plan was written.
 pub(super) fn answer(
     name: &str,
     plan: &forecast::Plan,
-    off_if_chi_is: [[f64; 2]; 2],
+    off_if_chi_is: Option<[[f64; 2]; 2]>,
     gaits: Option<Vec<String>>,
     playlist: Option<PathBuf>,
 ) -> Document {
@@ -44,7 +44,6 @@ pub(super) fn answer(
     };
     let off_keys =
         |[distance, angle]: [f64; 2]| object! {"distance_m": distance, "angle_rad": angle};
-    let [lower, higher] = off_if_chi_is;
     // Chains of legs that meet the target, and those that the walls leave.
     let [chains, within_walls] = plan.met;
     answer
@@ -57,8 +56,14 @@ pub(super) fn answer(
         // From the target, in the model.
         .key("off_m", plan.off[0])
         .key("off_rad", plan.off[1])
-        .key("off_if_chi_is_5_percent_lower", off_keys(lower))
-        .key("off_if_chi_is_5_percent_higher", off_keys(higher))
+        .key_if(
+            "off_if_chi_is_5_percent_lower",
+            off_if_chi_is.map(|[lower, _]| off_keys(lower)),
+        )
+        .key_if(
+            "off_if_chi_is_5_percent_higher",
+            off_if_chi_is.map(|[_, higher]| off_keys(higher)),
+        )
         .key("chains", chains)
         .key("chains_within_walls", within_walls)
         .row(
@@ -70,13 +75,16 @@ pub(super) fn answer(
                 quantity::angle(reached.theta),
                 plan.off[0]
             ),
-        )
-        .row("χ 5 % lower", off(lower))
-        .row("χ 5 % higher", off(higher))
-        .row(
-            "found",
-            format!("{chains} chains meet the target, {within_walls} of them within the walls"),
         );
+    if let Some([lower, higher]) = off_if_chi_is {
+        answer
+            .row("χ 5 % lower", off(lower))
+            .row("χ 5 % higher", off(higher));
+    }
+    answer.row(
+        "found",
+        format!("{chains} chains meet the target, {within_walls} of them within the walls"),
+    );
     if let Some(path) = playlist {
         answer.row("written to", path.display().to_string());
         answer.key("playlist", path);

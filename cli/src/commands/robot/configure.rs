@@ -11,7 +11,7 @@ use twin::configuration;
 use super::Configure;
 use super::access::Access;
 use super::port::Pace;
-use crate::arguments::load_swimmer;
+use crate::arguments::load_robots_swimmer;
 use crate::failure::{Failure, Outcome};
 use crate::output::Output;
 use crate::quantity;
@@ -37,7 +37,7 @@ impl fmt::Display for Configured {
 
 /// `swimmer robot configure`: limits come from the command line, else from the file's `[servo]` table, else stay.
 pub(super) fn configure(access: &Access, arguments: &Configure, output: Output) -> Outcome {
-    let file = load_swimmer(&arguments.swimmer)?;
+    let file = load_robots_swimmer(&arguments.swimmer)?;
     let mut line = access.connect("swimmer robot configure", Pace::AsFastAsPossible)?;
     let robot = &mut line.robot;
     let present = robot.configuration()?;
@@ -57,7 +57,7 @@ pub(super) fn configure(access: &Access, arguments: &Configure, output: Output) 
             servo.map(|servo| servo.max_rate),
             present.max_rate,
         ),
-        ..configuration(&file.swimmer, &ServoFile::default())
+        ..configuration(&file.swimmer, &ServoFile::default())?
     };
     let limits = robot.info().limits;
     robot
@@ -149,7 +149,7 @@ mod tests {
     #[test]
     fn a_refused_value_is_named() {
         let preset = swimmer_files::SwimmerFile::preset("robot").unwrap();
-        let wanted = configuration(&preset.swimmer, &ServoFile::default());
+        let wanted = configuration(&preset.swimmer, &ServoFile::default()).unwrap();
         let limits = RobotLimits {
             max_angle: 2.5,
             max_rate: 10.0,

@@ -122,6 +122,7 @@ pub(super) fn configured(configuration: &Configuration) -> (String, Swimmer<f64>
             }
         },
         sphere_radius: double(configuration.sphere_radius_m),
+        ..Swimmer::purcell()
     };
     ("as configured on the robot".to_owned(), swimmer)
 }
@@ -441,7 +442,7 @@ mod tests {
     #[test]
     fn a_configured_robot_is_its_preset_or_its_own_numbers() {
         let robot = SwimmerFile::preset("robot").unwrap();
-        let told = twin::configuration(&robot.swimmer, &ServoFile::default());
+        let told = twin::configuration(&robot.swimmer, &ServoFile::default()).unwrap();
         assert_eq!(configured(&told), (robot.name, robot.swimmer));
         let other = Configuration { chi: 3.21, ..told };
         let (name, swimmer) = configured(&other);

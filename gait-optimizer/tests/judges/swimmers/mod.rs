@@ -53,6 +53,7 @@ pub(crate) fn random(seed: u64, count: usize) -> Vec<Case> {
                 chi: rng.random_range(1.3..5.0),
                 tangential_drag,
                 sphere_radius: sphere * middle,
+                ..Swimmer::purcell()
             };
             let bounds = Bounds {
                 max_angle: Some(rng.random_range(1.8..3.0)),

@@ -32,10 +32,12 @@ pub(super) fn motion(_: &mut Lab, bytes: &[u8]) -> Outcome {
             out.extend([place.x, place.y]);
         }
         let (sin, cos) = pose.theta.sin_cos();
-        for link in model.link_forces(&phi, &gait.at(point.u).rate) {
-            for force in link.density {
-                out.extend([cos * force.x - sin * force.y, sin * force.x + cos * force.y]);
-            }
+        // Outside a viscous fluid no force is drawn.
+        let forces = model
+            .link_forces(&phi, &gait.at(point.u).rate)
+            .map_or_else(Default::default, |links| links.map(|link| link.density));
+        for force in forces.into_iter().flatten() {
+            out.extend([cos * force.x - sin * force.y, sin * force.x + cos * force.y]);
         }
     });
     numbers(out)

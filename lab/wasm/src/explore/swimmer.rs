@@ -55,12 +55,20 @@ pub(super) fn swimmer(_: &mut Lab, bytes: &[u8]) -> Outcome {
     file.swimmer
         .validate()
         .map_err(|why| format!("the swimmer `{}` cannot swim: {why}", file.name))?;
+    file.swimmer.common_drag().map_err(|why| {
+        format!(
+            "{why}, and this page shows viscous swimmers with one chi, one form of c_t and a sphere on the middle link; the \
+             command `swimmer` takes the file"
+        )
+    })?;
     let links = &file.swimmer.links;
     let servo = file.servo.unwrap_or_default();
     let (c_t_form, c_t) = match file.swimmer.tangential_drag {
         TangentialDrag::LogAspect(value) => ("log_aspect", value),
         TangentialDrag::HalfThickness(value) => ("half_thickness", value),
         TangentialDrag::OverViscosity(value) => ("over_viscosity", value),
+        // Refused above.
+        TangentialDrag::PerLink(_) => ("over_viscosity", file.swimmer.side_drag()),
     };
     json(&Answer {
         toml: file.to_toml(),

@@ -60,7 +60,7 @@ impl Bench<'_> {
         let wanted = Configuration {
             max_angle: limits.max_angle.min(max_angle as f32),
             max_rate: present.max_rate,
-            ..configuration(&swimmer.swimmer, &ServoFile::default())
+            ..configuration(&swimmer.swimmer, &ServoFile::default())?
         };
         robot.configure(wanted)?;
         for (joint, measured) in JOINTS.into_iter().zip(joints) {
