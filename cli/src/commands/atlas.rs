@@ -36,7 +36,7 @@ use folder::fill;
 /// atlas. For displacement the curves are simple; best is the largest net displacement, whatever its direction.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Atlas {
-    /// purcell, robot, robot-slender or a swimmer file
+    /// A preset that `swimmer swimmers` lists, or a swimmer file
     #[arg(long, value_name = "SWIMMER")]
     swimmer: String,
     /// What the gaits are optimal for

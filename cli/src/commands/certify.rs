@@ -20,7 +20,7 @@ use crate::quantity;
 /// A gait that fails, or that its samples leave undecided, ends with status 1, its whole certificate printed.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Certify {
-    /// purcell, robot, robot-slender or a swimmer file
+    /// A preset that `swimmer swimmers` lists, or a swimmer file
     #[arg(long, value_name = "SWIMMER")]
     swimmer: String,
     /// circle:AMPLITUDE, square:AMPLITUDE or a gait file; add :cw to reverse it

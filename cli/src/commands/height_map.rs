@@ -25,7 +25,7 @@ use crate::quantity::{self, Rows};
 /// so (the area rule). A gait of most displacement goes round a region of one sign.
 #[derive(Debug, clap::Args)]
 pub(crate) struct HeightMap {
-    /// purcell, robot, robot-slender or a swimmer file
+    /// A preset that `swimmer swimmers` lists, or a swimmer file
     #[arg(long, value_name = "SWIMMER")]
     swimmer: String,
     /// Which displacement: along the swimmer, across it, or rotation

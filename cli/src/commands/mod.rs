@@ -35,7 +35,7 @@ use crate::output::Output;
 )]
 #[command(after_help = "\
 Angles are 70deg, 1.2rad or a bare number of radians.
-SWIMMER is purcell, robot, robot-slender or the path of a swimmer file (TOML).
+SWIMMER is a preset (`swimmer swimmers` lists them) or the path of a swimmer file (TOML).
 GAIT is circle:AMPLITUDE, square:AMPLITUDE or the path of a gait file; add :cw to reverse it.
 Exit status: 0 done, 1 tried and failed, 2 bad usage or bad input.")]
 pub(crate) struct Arguments {

@@ -30,7 +30,7 @@ use crate::output::Output;
 /// `swimmer robot play --playlist` plays what -o writes.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Plan {
-    /// purcell, robot, robot-slender or a swimmer file
+    /// A preset that `swimmer swimmers` lists, or a swimmer file
     #[arg(long, value_name = "SWIMMER")]
     swimmer: String,
     #[command(flatten)]

@@ -25,7 +25,7 @@ use played::played_rows;
 /// Swim a gait in the model and print what one cycle brings
 #[derive(Debug, clap::Args)]
 pub(crate) struct Simulate {
-    /// purcell, robot, robot-slender or a swimmer file
+    /// A preset that `swimmer swimmers` lists, or a swimmer file
     #[arg(long, value_name = "SWIMMER")]
     swimmer: String,
     /// circle:AMPLITUDE, square:AMPLITUDE or a gait file; add :cw to reverse it

@@ -102,7 +102,7 @@ pub(crate) struct Found {
 // Its help is the objective's.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Search<O: Objective> {
-    /// purcell, robot, robot-slender or a swimmer file
+    /// A preset that `swimmer swimmers` lists, or a swimmer file
     #[arg(long, value_name = "SWIMMER")]
     swimmer: String,
     #[command(flatten)]
