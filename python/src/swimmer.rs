@@ -30,7 +30,7 @@ impl Swimmer {
 
 #[pymethods]
 impl Swimmer {
-    /// `purcell`, `robot` or `robot-slender`.
+    /// A preset that `swimmer swimmers` lists, such as `purcell`, `robot` or `perfect-fluid`.
     #[staticmethod]
     fn preset(name: &str) -> PyResult<Self> {
         let preset = SwimmerFile::preset(name).ok_or_else(|| {

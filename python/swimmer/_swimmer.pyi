@@ -25,7 +25,7 @@ class Swimmer:
 
     @staticmethod
     def preset(name: str) -> Swimmer:
-        """`purcell`, `robot` or `robot-slender`."""
+        """A preset that `swimmer swimmers` lists, such as `purcell`, `robot` or `perfect-fluid`."""
     @staticmethod
     def load(preset_or_path: str | os.PathLike[str]) -> Swimmer:
         """A swimmer file (TOML), or a preset by its name, as `--swimmer` takes them."""
@@ -80,13 +80,16 @@ class Swimmer:
         """L, the length of all links [m]."""
     @property
     def chi(self) -> float:
-        """χ = c_n/c_t."""
+        """χ = c_n/c_t, of the middle link if the links have their own."""
     @property
     def sphere_radius(self) -> float:
         """Radius of the sphere on the middle link [m]; 0 for none."""
     @property
-    def c_t(self) -> dict[str, float]:
+    def c_t(self) -> dict[str, float | dict[str, float]]:
         """The form of c_t and its value, as in the swimmer file."""
+    @property
+    def medium(self) -> str:
+        """Medium of the links: "viscous", "perfect" or "wheels"."""
     @property
     def hash(self) -> str:
         """The fingerprint that gait files carry: SHA-256 of links, drag and sphere."""

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use forecast::{Errand, Family, PlanError, Servos, Tank, plan};
 use swimmer_files::{AnyGait, GaitFile, SwimmerFile};
-use swimmer_model::{Gait as _, Pose};
+use swimmer_model::{Gait as _, Link, Pose};
 
 use self::answer::answer;
 use self::playlist::write_playlist;
@@ -95,6 +95,14 @@ impl Plan {
         let model = crate::arguments::model(&file)?;
         let regular = file.swimmer.check_regular();
         regular.map_err(|error| Failure::bad_input(&error))?;
+        let swimmer = &file.swimmer;
+        if self.tank.is_some() && swimmer.sphere_on != Link::Middle && swimmer.sphere_radius > 0.0 {
+            return Err(Failure::BadInput(format!(
+                "`{}` has its sphere on a side link ([sphere] on), and the distance to walls is that of a sphere on the middle \
+                 link: leave --tank out",
+                file.name
+            )));
+        }
         let mut family = self.family(&file)?;
         let errand = Errand {
             from: Pose::new(self.from.x, self.from.y, self.from.heading.unwrap_or(0.0)),

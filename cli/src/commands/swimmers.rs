@@ -69,10 +69,8 @@ fn presets() -> Document {
         let what = match name {
             "purcell" => "Purcell's swimmer, three equal slender links",
             "robot" => "the paper's robot, its drag fitted",
-            "perfect-fluid" => {
-                "three ellipses in a perfect fluid (Hatton and Choset 2013; Kanso and others 2005)"
-            }
-            "kinematic-snake" => "three links on wheels (Shammas, Choset and Rizzi 2007)",
+            "perfect-fluid" => "ellipses in a perfect fluid (Hatton, Choset 2013)",
+            "kinematic-snake" => "links on wheels (Shammas, Choset, Rizzi 2007)",
             _ => "the paper's robot as slender-body theory has it",
         };
         let links = &swimmer.links;

@@ -227,6 +227,7 @@ fn swimming(round: &Finished, swum: &Track) -> Outcome<Swimming> {
         title: String::new(),
         links: round.fitted.swimmer.links,
         sphere_radius: round.fitted.swimmer.sphere_radius,
+        sphere_on: round.fitted.swimmer.sphere_on,
         cycles: u32::try_from(cycles).unwrap_or(1),
         moments: (0..=cycles * MOMENTS).filter_map(moment).collect(),
     })

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 use plotters::style::RGBColor;
-use swimmer_model::Links;
+use swimmer_model::{Link, Links};
 
 use super::{Moment, Swimming};
 use crate::report::drawing::Drawing;
@@ -74,6 +74,16 @@ pub(super) fn outline(links: &Links<f64>, moment: &Moment) -> [Vector2<f64>; 4] 
         .map(|place| moment.pose.transform(&place))
 }
 
+/// Centre of the link that carries the sphere, in the plane.
+fn sphere_centre(swimming: &Swimming, moment: &Moment) -> Vector2<f64> {
+    let [back_tip, back, front, front_tip] = outline(&swimming.links, moment);
+    match swimming.sphere_on {
+        Link::Middle => moment.pose.position(),
+        Link::Front => (front + front_tip) * 0.5,
+        Link::Back => (back + back_tip) * 0.5,
+    }
+}
+
 /// Everything that a body at an instant covers, for a window around it.
 pub(super) fn covered(swimming: &Swimming, moment: &Moment) -> Vec<Vector2<f64>> {
     let breadth = BREADTH * swimming.length();
@@ -86,7 +96,7 @@ pub(super) fn covered(swimming: &Swimming, moment: &Moment) -> Vec<Vector2<f64>>
     let links = outline(&swimming.links, moment)
         .into_iter()
         .flat_map(|place| around(place, breadth));
-    let sphere = around(moment.pose.position(), swimming.sphere_radius);
+    let sphere = around(sphere_centre(swimming, moment), swimming.sphere_radius);
     links.chain(sphere).collect()
 }
 
@@ -110,7 +120,7 @@ pub(super) fn draw(
     let breadth = (BREADTH * swimming.length() * window.scale).max(2.5);
     let [back_tip, back, front, front_tip] =
         outline(&swimming.links, moment).map(|place| window.at(&place));
-    let centre = window.at(&moment.pose.position());
+    let centre = window.at(&sphere_centre(swimming, moment));
     if swimming.sphere_radius > 0.0 && look.whole {
         let radius = swimming.sphere_radius * window.scale;
         drawing.disc(centre, radius, (look.color, 0.07));

@@ -9,7 +9,7 @@ pub(crate) use animation::{FRAMES_PER_SECOND, SIZE as ANIMATION_SIZE, animation}
 pub(crate) use snapshots::snapshots;
 
 use plotters::style::RGBColor;
-use swimmer_model::{Gait, Links, Model, Pose, Tolerance, trajectory};
+use swimmer_model::{Gait, Link, Links, Model, Pose, Tolerance, trajectory};
 
 /// Poses and shapes of the body, from the first instant to the last.
 #[derive(Debug, Clone)]
@@ -18,8 +18,10 @@ pub(crate) struct Swimming {
     pub(crate) title: String,
     /// Lengths of the links, m.
     pub(crate) links: Links<f64>,
-    /// Radius of the sphere at the middle link's centre, m; 0 for none.
+    /// Radius of the sphere, m; 0 for none.
     pub(crate) sphere_radius: f64,
+    /// Link at whose centre the sphere sits.
+    pub(crate) sphere_on: Link,
     /// Number of cycles.
     pub(crate) cycles: u32,
     /// The instants, evenly spaced, both ends included; as many in each cycle.
@@ -83,6 +85,7 @@ impl Swimming {
             title,
             links: model.swimmer().links,
             sphere_radius: model.swimmer().sphere_radius,
+            sphere_on: model.swimmer().sphere_on,
             cycles,
             moments,
         }
