@@ -147,7 +147,7 @@ impl TwinConfig {
 /// Configuration message for a swimmer with the limits of its servos. The front and back links may differ.
 ///
 /// # Errors
-/// The message has one χ, one form of c_t and a sphere on the middle link; the swimmer needs others.
+/// The message has one χ, one form of `c_t` and a sphere on the middle link; the swimmer needs others.
 ///
 /// ```
 /// use swimmer_files::{ServoFile, SwimmerFile};
