@@ -38,13 +38,12 @@ struct Units {
 
 fn units(swimmer: &Swimmer<f64>) -> Units {
     let length = swimmer.total_length();
-    let drag = match swimmer.medium {
-        Medium::Perfect { density, .. } => density * length.powi(4),
-        _ => {
-            let links = [Link::Middle, Link::Front, Link::Back];
-            let normal = links.map(|link| swimmer.chi_of(link) * swimmer.tangential_drag_of(link));
-            normal.into_iter().fold(0.0, f64::max) * length.powi(3)
-        }
+    let drag = if let Medium::Perfect { density, .. } = swimmer.medium {
+        density * length.powi(4)
+    } else {
+        let links = [Link::Middle, Link::Front, Link::Back];
+        let normal = links.map(|link| swimmer.chi_of(link) * swimmer.tangential_drag_of(link));
+        normal.into_iter().fold(0.0, f64::max) * length.powi(3)
     };
     Units {
         connection: [length, length, 1.0],
