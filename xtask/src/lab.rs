@@ -20,7 +20,8 @@ const PAGE: &str = "lab/page";
 const MODULES: [(&str, &str); 3] = [("explore", "2"), ("drive", "'z'"), ("calibrate", "'z'")];
 /// Limits of the sizes in bytes.
 const LARGEST_MODULE: usize = 1_400_000;
-const LARGEST_PAGE: usize = 1_600_000;
+/// Loads within a second from a disk or a local network; words for symbols and hints took the page past 1.6 MB.
+const LARGEST_PAGE: usize = 1_700_000;
 /// Optimisation level of the standard library's sines and exponentials. Only this build compiles that crate.
 const FAST: &str = "profile.lab.package.compiler_builtins.opt-level=3";
 /// Features of WebAssembly that the compiler may have used, for `wasm-opt`.

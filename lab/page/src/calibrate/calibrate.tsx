@@ -19,15 +19,27 @@ export function Calibrate() {
     <div id="calibrate" aria-busy={busy !== null}>
       <div class="toolbar">
         <OpenButton id="open-campaign" name="Open…" accept=".toml,.csv,.txt,.tsv,.json,.trc,.gait,.mcap" open={openAll} />
-        <button onClick={clear} disabled={tracks.value.length === 0 && !fit.value}>Clear</button>
+        <button onClick={clear} disabled={tracks.value.length === 0 && !fit.value && problem.value === ""}>Clear</button>
         <button disabled={!fit.value} onClick={() => fit.value && download("fitted-swimmer.toml", fit.value.swimmer, "application/toml")}>Save fitted swimmer</button>
         {busy && <button onClick={stop}>Stop</button>}
-        <span class="soft" role="status">{busy ? `${busy.what} …${busy.seconds ? ` ${busy.seconds} s` : ""}` : tracks.value.length === 0 ? "Drop a campaign file with all that it names, or tracking files alone." : ""}</span>
+        <span class="soft" role="status">{busy ? `${busy.what} …${busy.seconds ? ` ${busy.seconds} s` : ""}` : ""}</span>
         {problem.value && <span class="error" role="alert">{problem}</span>}
       </div>
+      {!busy && tracks.value.length === 0 && !fit.value && <DropZone />}
       {fit.value && <Fitted fit={fit.value} />}
       {tracks.value.length > 0 && <Tracks />}
     </div>
+  );
+}
+
+/** Invitation while no file is open. */
+function DropZone() {
+  return (
+    <section class="drop-zone" aria-label="Files to calibrate with">
+      <h2>Drop files here, or press Open…</h2>
+      <p>A campaign file (campaign.toml) with all files that it names: r<sub>s</sub> and χ are fitted. Tracking files alone: their points, rates and gaps are listed.</p>
+      <p class="soft">To try it, run <code>swimmer demo -o demo-out</code> and drop campaign.toml, start.toml and the circle-….csv of that folder. The files stay on this computer.</p>
+    </section>
   );
 }
 

@@ -95,22 +95,26 @@ function OptimumRow({ what }: { what: Optimum }) {
     forgetStopped(what);
     editGait({ kind: "optimum", what });
   };
+  const reason = wanted && searching.value?.what !== what && found && "reason" in found ? found.reason : "";
   return (
-    <tr class={wanted && !isCurrent(what) ? "stale" : ""}>
-      <th scope="row">
-        <label>
-          <input type="checkbox" checked={laid} onChange={toggle} />
-          <span class={`key of-${OPTIMA.indexOf(what)}`} aria-hidden="true" />
-          {NAMES[what]}
-        </label>
-      </th>
-      <td data-optimum={what}>
-        {!wanted ? "" : searching.value?.what === what ? <Searching seconds={searching.value.seconds} /> : !found ? "…" : "reason" in found ? <span class="error reason" title={found.reason}>{found.reason}</span> : brief(what, found.told)}
-      </td>
-      <td>
-        <button class="small" onClick={take} aria-label={`Take ${NAMES[what]}`}>Take</button>
-      </td>
-    </tr>
+    <>
+      <tr class={wanted && !isCurrent(what) ? "stale" : ""}>
+        <th scope="row">
+          <label>
+            <input type="checkbox" checked={laid} onChange={toggle} />
+            <span class={`key of-${OPTIMA.indexOf(what)}`} aria-hidden="true" />
+            {NAMES[what]}
+          </label>
+        </th>
+        <td data-optimum={what}>
+          {!wanted ? "" : searching.value?.what === what ? <Searching seconds={searching.value.seconds} /> : !found ? "…" : "reason" in found ? "none" : brief(what, found.told)}
+        </td>
+        <td>
+          <button class="small" onClick={take} aria-label={`Take ${NAMES[what]}`}>Take</button>
+        </td>
+      </tr>
+      {reason && <tr><td class="error reason" colSpan={3}>{reason}</td></tr>}
+    </>
   );
 }
 

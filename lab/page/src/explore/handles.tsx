@@ -1,5 +1,6 @@
 // Control points of the dragged gait: moved by pointer or arrow keys; points can be added and removed.
 
+import { signal } from "@preact/signals";
 import { useRef } from "preact/hooks";
 import { editGait, endGesture, type Gait, type Point, shown } from "./document.ts";
 import { moved, resampled } from "./spline.ts";
@@ -19,13 +20,21 @@ const ARROWS: Record<string, Point> = {
   ArrowDown: [0, -1],
 };
 
+/** A finger needs a handle of 24 px on the narrowest map. */
+const coarse = matchMedia("(pointer: coarse)").matches;
+const RADIUS = coarse ? 0.075 : 0.022;
+
+const USAGE = "Drag a point, or move the focused one with the arrow keys; Delete removes it.";
+/** Line below the map about the control points. */
+export const hint = signal(USAGE);
+
 const bounded = (value: number) => Math.max(-FARTHEST, Math.min(FARTHEST, value));
 
 export function Handles({ gait, second }: { gait: Gait; second: boolean }) {
   const dragged = useRef<number | null>(null);
   if (gait.kind !== "drawn") return null;
   const { points, symmetric } = gait;
-  const radius = shown.value.halfWidth * 0.022;
+  const radius = shown.value.halfWidth * RADIUS;
   const move = (index: number, to: Point, gesture: string) =>
     editGait({ ...gait, points: moved(points, index, [bounded(to[0]), bounded(to[1])], symmetric) }, gesture);
   const onKey = (event: KeyboardEvent, index: number, [x, y]: Point) => {
@@ -33,8 +42,13 @@ export function Handles({ gait, second }: { gait: Gait; second: boolean }) {
     if (arrow && !event.altKey) {
       const step = event.shiftKey ? LARGE_STEP : STEP;
       move(index, [x + arrow[0] * step, y + arrow[1] * step], `key-${index}`);
-    } else if ((event.key === "Delete" || event.key === "Backspace") && !symmetric && points.length > FEWEST) {
-      editGait({ ...gait, points: points.filter((_, k) => k !== index) });
+    } else if (event.key === "Delete" || event.key === "Backspace") {
+      if (symmetric) hint.value = "Symmetric gaits lose four points at once: press − or switch Symmetric off.";
+      else if (points.length <= FEWEST) hint.value = `A gait has at least ${FEWEST} points.`;
+      else {
+        hint.value = USAGE;
+        editGait({ ...gait, points: points.filter((_, k) => k !== index) });
+      }
     } else return;
     event.preventDefault();
   };

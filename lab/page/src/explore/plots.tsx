@@ -6,6 +6,7 @@ import "uplot/dist/uPlot.min.css";
 import { dark } from "../shell/theme.tsx";
 import { shown } from "./document.ts";
 import { INTERVALS, motions } from "./model.ts";
+import { unit } from "./names.ts";
 import { ink } from "./swim.ts";
 
 const STRIDE = 26;
@@ -17,20 +18,23 @@ interface Series {
   dash?: number[];
 }
 
-const PLOTS: readonly { title: string; series: readonly Series[] }[] = [
-  { title: "joint angles [°]", series: [{ name: "φ₁", column: 1, factor: 180 / Math.PI }, { name: "φ₂", column: 2, factor: 180 / Math.PI, dash: [5, 4] }] },
-  { title: "x, y [mm]", series: [{ name: "x", column: 3, factor: 1000 }, { name: "y", column: 4, factor: 1000, dash: [5, 4] }] },
+type PlotProps = { title: string; series: readonly Series[] };
+
+const angles = (factor: number): readonly Series[] => [{ name: "front φ₁", column: 1, factor }, { name: "back φ₂", column: 2, factor, dash: [5, 4] }];
+const PLOTS: readonly (() => PlotProps)[] = [
+  () => (unit.value === "°" ? { title: "joint angles [°]", series: angles(180 / Math.PI) } : { title: "joint angles [rad]", series: angles(1) }),
+  () => ({ title: "middle link [mm]", series: [{ name: "along x", column: 3, factor: 1000 }, { name: "across y", column: 4, factor: 1000, dash: [5, 4] }] }),
 ];
 
 export function Plots() {
   return (
     <section class="card plots" aria-label="Over the cycle">
-      {PLOTS.map((plot) => <Plot key={plot.title} {...plot} />)}
+      {PLOTS.map((plot) => plot()).map((plot) => <Plot key={plot.title} {...plot} />)}
     </section>
   );
 }
 
-function Plot({ title, series }: (typeof PLOTS)[number]) {
+function Plot({ title, series }: PlotProps) {
   const place = useRef<HTMLDivElement>(null);
   const motion = motions.value[shown.value.active] ?? motions.value[0];
   const second = shown.value.active === 1;

@@ -4,28 +4,30 @@ import type { ComponentChildren } from "preact";
 import type { Swum, TankAnswer } from "./answers.ts";
 import { edit, shown } from "./document.ts";
 import { evidence, evidenceIsStale, swum, tank, trouble } from "./model.ts";
-import { angle, figure, length } from "./names.ts";
+import { angle, condition, figure, length, rate } from "./names.ts";
 
 type Told = { swum: Swum; tank: TankAnswer | null };
 interface Line {
   name: string;
+  /** The quantity in words, before its symbol. */
+  words: string;
   about: string;
   tell(told: Told): ComponentChildren;
 }
 
 const LINES: readonly Line[] = [
-  { name: "X/L", about: "Displacement of a cycle along the first heading, over the length", tell: ({ swum }) => figure(swum.displacement_over_length, 6) },
-  { name: "X", about: "Displacement of a cycle", tell: ({ swum }) => length(swum.displacement_m) },
-  { name: "Y/L", about: "Displacement across the first heading, over the length", tell: ({ swum }) => figure(swum.lateral_over_length, 6) },
-  { name: "θ", about: "Rotation of a cycle", tell: ({ swum }) => angle(swum.rotation_rad) },
-  { name: "ξ", about: "Lighthill efficiency as parametrised", tell: ({ swum }) => figure(swum.efficiency, 6) },
-  { name: "ξ, constant power", about: "Lighthill efficiency of the same curve at constant power", tell: ({ swum }) => figure(swum.efficiency_constant_power, 6) },
-  { name: "speed", about: "Net displacement over the period", tell: ({ swum }) => `${figure(swum.speed_m_per_s * 1000, 3)} mm/s` },
-  { name: "peak rates", about: "Largest joint rates in the period", tell: ({ swum }) => `${swum.peak_rates_rad_s.map((rate) => figure(rate, 2)).join(", ")} rad/s` },
-  { name: "reach", about: "Largest joint angle", tell: ({ swum }) => angle(swum.reach_rad) },
-  { name: "shortest period", about: "What the servos' rate allows as parametrised", tell: ({ swum }) => (swum.shortest_period_s === null ? "–" : `${figure(swum.shortest_period_s, 2)} s`) },
-  { name: "tank", about: "Cycles from the middle of the tank to a wall", tell: ({ tank }) => (tank ? (tank.cycles === null ? "no wall met" : `${figure(tank.cycles, 1)} cycles`) : "–") },
-  { name: "links cross", about: "Share of the cycle in which links cross", tell: ({ swum }) => (swum.links_cross > 0 ? `${figure(swum.links_cross * 100, 1)} %` : "never") },
+  { name: "X/L", words: "displacement", about: "Displacement of a cycle along the first heading, over the length", tell: ({ swum }) => figure(swum.displacement_over_length, 6) },
+  { name: "X", words: "displacement", about: "Displacement of a cycle", tell: ({ swum }) => length(swum.displacement_m) },
+  { name: "Y/L", words: "sideways", about: "Displacement across the first heading, over the length", tell: ({ swum }) => figure(swum.lateral_over_length, 6) },
+  { name: "θ", words: "rotation", about: "Rotation of a cycle", tell: ({ swum }) => angle(swum.rotation_rad) },
+  { name: "ξ", words: "efficiency", about: "Lighthill efficiency as parametrised", tell: ({ swum }) => figure(swum.efficiency, 6) },
+  { name: "ξ, constant power", words: "efficiency at constant power", about: "Lighthill efficiency of the same curve at constant power", tell: ({ swum }) => figure(swum.efficiency_constant_power, 6) },
+  { name: "speed", words: "", about: "Net displacement over the period", tell: ({ swum }) => `${figure(swum.speed_m_per_s * 1000, 3)} mm/s` },
+  { name: "peak rates", words: "", about: "Largest joint rates in the period", tell: ({ swum }) => `${swum.peak_rates_rad_s.map(rate).join(", ")}` },
+  { name: "reach", words: "", about: "Largest joint angle", tell: ({ swum }) => angle(swum.reach_rad) },
+  { name: "shortest period", words: "", about: "What the servos' rate allows as parametrised", tell: ({ swum }) => (swum.shortest_period_s === null ? "–" : `${figure(swum.shortest_period_s, 2)} s`) },
+  { name: "tank", words: "", about: "Cycles from the middle of the tank to a wall", tell: ({ tank }) => (tank ? (tank.cycles === null ? "no wall met" : `${figure(tank.cycles, 1)} cycles`) : "–") },
+  { name: "links cross", words: "", about: "Share of the cycle in which links cross", tell: ({ swum }) => (swum.links_cross > 0 ? `${figure(swum.links_cross * 100, 1)} %` : "never") },
 ];
 
 export function Readout() {
@@ -47,9 +49,9 @@ export function Readout() {
           </thead>
         )}
         <tbody>
-          {LINES.map(({ name, about, tell }) => (
+          {LINES.map(({ name, words, about, tell }) => (
             <tr key={name} title={about}>
-              <th scope="row">{name}</th>
+              <th scope="row">{words && `${words} `}{words ? <i>{name.split(",")[0]}</i> : name}</th>
               {both.slice(0, compared ? 2 : 1).map((told, slot) => (
                 <td key={slot} data-name={name} data-slot={slot}>{told ? tell(told) : "…"}</td>
               ))}
@@ -82,8 +84,8 @@ function Certificate() {
         </thead>
         <tbody>
           {told.checks.map(({ name, value, tolerance, pass }) => (
-            <tr key={name} class={pass ? "" : "failed"}>
-              <th scope="row">{pass ? "✓" : "✗"} {name.replaceAll("_", " ")}</th>
+            <tr key={name} title={name} class={pass ? "" : "failed"}>
+              <th scope="row">{pass ? "✓" : "✗"} {condition(name)}</th>
               <td>{value.toExponential(1)}</td>
               <td>{name.endsWith("_least") ? "≥" : "≤"} {tolerance.toExponential(0)}</td>
             </tr>

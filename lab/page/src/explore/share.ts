@@ -99,6 +99,7 @@ export async function followFragment(): Promise<void> {
 
 /** Copies a link to the present view to the clipboard. */
 export async function copyLink(): Promise<string> {
+  if (location.protocol === "file:") return "A page on disk has no link for others: save the gait file and the swimmer file, and send those";
   setFragment(KEY, await packed(shown.value));
   try {
     await navigator.clipboard.writeText(location.href);

@@ -4,6 +4,7 @@ import { signal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { OpenButton } from "../files/open-button.tsx";
 import { canRedo, canUndo, redo, undo } from "./document.ts";
+import { unit } from "./names.ts";
 import { openFiles } from "./open.ts";
 import { saveGait, saveGif, savePng, saveSvg, saveSwimmer, saveTable, saveVideo } from "./save.ts";
 import { copyLink } from "./share.ts";
@@ -65,6 +66,7 @@ export function Toolbar() {
         {SAVES.map(({ name }) => <option key={name}>{name}</option>)}
       </select>
       <button onClick={async () => (said.value = await copyLink())}>Copy link</button>
+      <button onClick={() => (unit.value = unit.value === "°" ? "rad" : "°")} title="Unit of every angle on this page">Angles in {unit.value === "°" ? "degrees" : "radians"}</button>
       <span class="soft" role="status">{said}</span>
     </div>
   );

@@ -53,11 +53,13 @@ export function App() {
         </span>
         <RobotBar />
       </header>
-      {ROOMS.filter(({ id }) => visited.has(id)).map(({ id, Panel }) => (
-        <main key={id} id={`room-${id}`} role="tabpanel" aria-labelledby={`tab-${id}`} hidden={open.value !== id}>
-          <Panel />
-        </main>
-      ))}
+      <main>
+        {ROOMS.filter(({ id }) => visited.has(id)).map(({ id, Panel }) => (
+          <div key={id} id={`room-${id}`} class="panel" role="tabpanel" aria-labelledby={`tab-${id}`} hidden={open.value !== id}>
+            <Panel />
+          </div>
+        ))}
+      </main>
       {link.value.state !== "closed" && <div class="place-of-estop" />}
       <EStop />
     </>
