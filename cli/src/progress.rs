@@ -38,8 +38,22 @@ impl Progress {
         progress
     }
 
+    /// A line with the time since its start, for work of unknown length.
+    pub(crate) fn of_unknown_length(what: &'static str) -> Self {
+        if !is_shown() {
+            return Self(ProgressBar::hidden());
+        }
+        let bar = ProgressBar::new_spinner();
+        if let Ok(style) = ProgressStyle::with_template("{spinner} {elapsed} {wide_msg}") {
+            bar.set_style(style);
+        }
+        bar.set_message(what);
+        bar.enable_steady_tick(Duration::from_millis(100));
+        Self(bar)
+    }
+
     fn drawn(bar: ProgressBar, count: &str, left: impl ProgressTracker + 'static) -> Self {
-        if !std::io::stderr().is_terminal() || for_scripts() {
+        if !is_shown() {
             return Self(ProgressBar::hidden());
         }
         let template = if columns() < ROOM_FOR_A_BAR {
@@ -81,6 +95,11 @@ impl Progress {
     pub(crate) fn at(&self, position: u64) {
         self.0.set_position(position);
     }
+}
+
+/// Returns `true` if a person looks at standard error.
+fn is_shown() -> bool {
+    std::io::stderr().is_terminal() && !for_scripts()
 }
 
 impl Drop for Progress {

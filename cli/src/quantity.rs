@@ -14,6 +14,11 @@ pub(crate) fn length(metres: f64) -> String {
     }
 }
 
+/// Radians without the digits that a conversion from degrees leaves behind: 1.1397, not 1.1397000015522971.
+pub(crate) fn radians(value: f64) -> String {
+    format!("{} rad", (value * 1e6).round() / 1e6)
+}
+
 /// Decimals that show an interval's width to two digits.
 pub(crate) fn decimals([low, high]: [f64; 2]) -> usize {
     let width = high - low;
@@ -151,6 +156,13 @@ mod tests {
         assert_eq!(decimals([3.5960, 3.5989]), 4);
         assert_eq!(decimals([60.0, 75.0]), 0);
         assert_eq!(decimals([1.0, 1.0]), 4);
+    }
+
+    #[test]
+    fn radians_have_no_digits_of_the_conversion() {
+        assert_eq!(radians(65.3_f64.to_radians()), "1.1397 rad");
+        assert_eq!(radians(1.14_f64.next_up()), "1.14 rad");
+        assert_eq!(radians(2.8), "2.8 rad");
     }
 
     #[test]

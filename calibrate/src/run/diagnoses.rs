@@ -40,7 +40,7 @@ impl RunResult {
         }
         if report.ghosts_rejected > 0 {
             out.push(format!(
-                "{} points that are no reflector: {}",
+                "{} points that are no reflector (glints or other markers; left out of the poses): {}",
                 report.ghosts_rejected,
                 times(&report.ghosts)
             ));

@@ -104,7 +104,11 @@ impl HeightMap {
             let text = match kind {
                 Kind::Csv => table(&map, row)?,
                 _ => picture::svg(&picture::Figure {
-                    title: format!("{}, |φᵢ| ≤ {} rad", file.name, self.max_angle),
+                    title: format!(
+                        "{}, |φᵢ| ≤ {}",
+                        file.name,
+                        quantity::radians(self.max_angle)
+                    ),
                     quantity: self.row.quantity(),
                     map: &map,
                     row,
@@ -217,8 +221,8 @@ impl fmt::Display for Text<'_> {
         }
         write!(
             f,
-            "{swimmer_name}, {symbol} on joint angles up to {} rad\n{rows}",
-            output.max_angle_rad
+            "{swimmer_name}, {symbol} on joint angles up to {}\n{rows}",
+            quantity::radians(output.max_angle_rad)
         )
     }
 }

@@ -46,8 +46,8 @@ use crate::output::Output;
 /// Talk to a robot over a serial port, or to a virtual one
 ///
 /// PORT is a serial port, the link of `swimmer twin --pty`, tcp:HOST:PORT of `swimmer twin --tcp`, or a fresh robot in a
-/// virtual tank for the length of this command: `twin`, or `emulator` with the real firmware on an emulated board. It
-/// runs as fast as it can where the command ends by itself, and in real time where it waits for the operator (arm, pause,
+/// virtual tank for the length of this command: `twin`, or `emulator` with the real firmware on an emulated board, each
+/// also with a swimmer, as `twin:purcell` or `twin:ours.toml`. It runs as fast as it can where the command ends by itself, and in real time where it waits for the operator (arm, pause,
 /// watch, log, play without --cycles).
 #[derive(Debug, clap::Args)]
 #[command(subcommand_value_name = "ACTION", subcommand_help_heading = "Actions")]

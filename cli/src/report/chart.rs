@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use plotters::prelude::*;
 
+use super::placing::Places;
 use super::style::{
     AXIS, Area, LEGEND_LINE, NAMES, NUMBERS, SCALE, TITLE, WORDS, arrows, finished, head, legend,
     letters, pixels, said, stroke,
@@ -24,6 +25,11 @@ pub(crate) const SINGULAR: RGBColor = RGBColor(0xc3, 0xcd, 0xd6);
 /// A broad band of what was measured, to draw a prediction upon.
 pub(crate) const MEASURED_BAND: RGBColor = RGBColor(0x9d, 0xc6, 0xe8);
 const FAINT: RGBColor = RGBColor(0xe3, 0xe7, 0xeb);
+
+/// Discs that words keep off; of more, a word would find no place.
+const MOST_OBSTACLES: usize = 60;
+/// Names below the horizontal axis.
+const MOST_NAMES: usize = 20;
 
 /// Something drawn on a chart.
 #[derive(Debug, Clone)]
@@ -103,7 +109,16 @@ impl Chart {
                 ))
             })?;
         }
-        Ok(finished(&text, size))
+        Ok(finished(&text, size, &self.name()))
+    }
+
+    /// Name for readers of screens: the title, or the axes.
+    fn name(&self) -> String {
+        match (self.title.as_str(), self.x_label.as_str()) {
+            ("", "") => format!("{} of each", self.y_label),
+            ("", x_label) => format!("{} over {x_label}", self.y_label),
+            (title, _) => title.to_owned(),
+        }
     }
 
     /// Width of the numbers at the y axis and of its name \[px\].
@@ -168,6 +183,16 @@ impl Chart {
             .y_desc(self.y_label.as_str())
             .draw()
             .map_err(|error| said(&error))?;
+        let mut places = Places::default();
+        for series in &self.series {
+            if let Series::Dots { points, radius, .. } = series
+                && points.len() <= MOST_OBSTACLES
+            {
+                for point in points {
+                    places.disc(chart.backend_coord(point), pixels(*radius));
+                }
+            }
+        }
         for series in &self.series {
             match series {
                 Series::Line {
@@ -230,8 +255,22 @@ impl Chart {
                 Series::Names(_) => {}
                 Series::Word { at, text, color } => {
                     let style = letters(WORDS, *color);
-                    let word = EmptyElement::at(*at)
-                        + Text::new(text.clone(), (6 * SCALE, -8 * SCALE), style);
+                    let count = i32::try_from(text.chars().count()).unwrap_or(0);
+                    let size = (count * WORDS * SCALE * 3 / 5, WORDS * SCALE);
+                    let usual = (6 * SCALE, -8 * SCALE);
+                    let within = (self.size.0 * SCALE, self.size.1 * SCALE);
+                    let placed = places.word(chart.backend_coord(at), size, usual, within);
+                    let (x, y) = placed.offset;
+                    if placed.is_far {
+                        // The edge that faces the point.
+                        let corner = (x + (-x).clamp(0, size.0), y + (-y).clamp(0, size.1));
+                        let joined = EmptyElement::at(*at)
+                            + PathElement::new(vec![(0, 0), corner], stroke(AXIS, 0.8));
+                        chart
+                            .draw_series(std::iter::once(joined))
+                            .map_err(|error| said(&error))?;
+                    }
+                    let word = EmptyElement::at(*at) + Text::new(text.clone(), (x, y), style);
                     chart
                         .draw_series(std::iter::once(word))
                         .map_err(|error| said(&error))?;
@@ -256,7 +295,11 @@ impl Chart {
 
     fn x_name(&self, value: f64) -> Option<String> {
         let mut names = self.names()?.iter().enumerate();
-        let is_there = |(place, _): &(usize, &String)| (*place as f64 + 1.0 - value).abs() < 1e-6;
+        // More names than fit are thinned.
+        let every = names.len().div_ceil(MOST_NAMES).max(1);
+        let is_there = |(place, _): &(usize, &String)| {
+            place.is_multiple_of(every) && (*place as f64 + 1.0 - value).abs() < 1e-6
+        };
         Some(
             names
                 .find(is_there)

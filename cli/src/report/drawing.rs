@@ -4,11 +4,13 @@ use std::fmt::Write;
 
 use plotters::style::RGBColor;
 
-use super::style::{Point, subscripted};
+use super::style::{Point, named, subscripted};
 
 /// A drawing on white; places are pixels of the page, y downwards.
 #[derive(Debug)]
 pub(crate) struct Drawing {
+    /// For readers of screens.
+    name: String,
     size: (f64, f64),
     text: String,
 }
@@ -28,9 +30,10 @@ pub(crate) enum Anchor {
 }
 
 impl Drawing {
-    /// Empty paper.
-    pub(crate) fn new(width: f64, height: f64) -> Self {
+    /// Empty paper for a drawing of this name.
+    pub(crate) fn new(name: &str, width: f64, height: f64) -> Self {
         let mut drawing = Self {
+            name: name.to_owned(),
             size: (width, height),
             text: String::new(),
         };
@@ -107,7 +110,8 @@ impl Drawing {
     pub(crate) fn svg(&self) -> String {
         let (width, height) = (place(self.size.0), place(self.size.1));
         format!(
-            "<svg width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" xmlns=\"http://www.w3.org/2000/svg\">\n{}</svg>\n",
+            "<svg width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" {} xmlns=\"http://www.w3.org/2000/svg\">\n{}</svg>\n",
+            named(&self.name),
             self.text
         )
     }

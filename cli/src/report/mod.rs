@@ -7,6 +7,7 @@ pub(crate) mod experiment;
 mod figures;
 pub(crate) mod markup;
 mod page;
+mod placing;
 pub(crate) mod style;
 pub(crate) mod swimming;
 

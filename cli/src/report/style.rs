@@ -69,10 +69,20 @@ pub(crate) fn number(value: f64, decimals: usize) -> String {
     format!("{:.decimals$}", if zero { 0.0 } else { value }).replace('-', "\u{2212}")
 }
 
-/// A finished drawing of this size in pixels of the page: on white, shown at its true size, with real subscripts.
-pub(crate) fn finished(drawing: &str, size: (i32, i32)) -> String {
+/// Attributes that give a drawing its name, for readers of screens; `H_x` is written without its bar.
+pub(crate) fn named(name: &str) -> String {
+    let plain = split(name, |index| index.to_string());
+    let escaped = plain
+        .replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('"', "&quot;");
+    format!("role=\"img\" aria-label=\"{escaped}\"")
+}
+
+/// A finished drawing of this size in pixels of the page: named, on white, shown at its true size, with real subscripts.
+pub(crate) fn finished(drawing: &str, size: (i32, i32), name: &str) -> String {
     let drawn = format!("width=\"{}\" height=\"{}\"", size.0 * SCALE, size.1 * SCALE);
-    let shown = format!("width=\"{}\" height=\"{}\"", size.0, size.1);
+    let shown = format!("width=\"{}\" height=\"{}\" {}", size.0, size.1, named(name));
     // Text stands on lines of its own, between those of its tags.
     let mut within_text = false;
     let lines = drawing.replacen(&drawn, &shown, 1);
@@ -215,9 +225,11 @@ mod tests {
         }
         let drawing =
             "<svg width=\"80\" height=\"160\">\n<text x=\"1\">\nr_s [mm]\n</text>\n</svg>\n";
-        let text = finished(drawing, (10, 20));
+        let text = finished(drawing, (10, 20), "r_s over \"x\"");
         assert!(
-            text.starts_with("<svg width=\"10\" height=\"20\">"),
+            text.starts_with(
+                "<svg width=\"10\" height=\"20\" role=\"img\" aria-label=\"rs over &quot;x&quot;\">"
+            ),
             "{text}"
         );
         assert!(

@@ -152,6 +152,19 @@ fn is_assessed(answer: &serde_json::Value) {
     assert_eq!(answer["explanations"].as_array().unwrap().len(), 14);
 }
 
+fn figures_are_named_and_details_folded(report: &str) {
+    // r_s, χ, X, ΔY, Δθ, ridge, two profiles, residuals, without a run; three for each of nine runs.
+    assert_eq!(report.matches("<svg").count(), 10 + 27);
+    assert_eq!(
+        report.matches("role=\"img\" aria-label=\"").count(),
+        10 + 27
+    );
+    // The summary is open, the details of each run are folded.
+    let fold = report.find("<details").expect("folded details");
+    assert!(report.find("The runs</h2>").unwrap() < fold);
+    assert!(fold < report.find("Tracks and cycles of each run").unwrap());
+}
+
 /// Report, tables and the fitted swimmer with the hashes of its inputs, from the demo's own campaign.
 fn what_a_calibration_leaves_behind(demo: &Path) {
     let run = swimmer_in(
@@ -178,8 +191,7 @@ fn what_a_calibration_leaves_behind(demo: &Path) {
         assert!(report.contains(asked), "no `{asked}` on the page");
     }
     assert!(read("fitted-further.toml").contains("[[provenance.input]]"));
-    // r_s, χ, X, ΔY, Δθ, ridge, two profiles, residuals, without a run; three for each of nine runs.
-    assert_eq!(report.matches("<svg").count(), 10 + 27);
+    figures_are_named_and_details_folded(&report);
     let first = report.find("Verdict: ").expect("a verdict");
     assert!(first < report.find("recommended").unwrap() && first < report.find("budget").unwrap());
     for outside in ["src=", "href=", "url(", "@import"] {

@@ -55,11 +55,13 @@ impl fmt::Display for Bounds {
             between = ", ";
             result
         };
+        // Without the digits that a conversion from degrees leaves behind.
+        let short = |radians: f64| (radians * 1e6).round() / 1e6;
         if let Some(max) = self.max_angle {
-            item(format_args!("joints within {max} rad"))?;
+            item(format_args!("joints within {} rad", short(max)))?;
         }
         if let Some(min) = self.min_angle {
-            item(format_args!("leading joint beyond {min} rad"))?;
+            item(format_args!("leading joint beyond {} rad", short(min)))?;
         }
         if self.sector {
             item(format_args!("each quarter in its sector"))?;

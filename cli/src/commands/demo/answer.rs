@@ -93,7 +93,7 @@ impl fmt::Display for DemoAnswer {
         let Race { fastest, .. } = &self.race;
         writeln!(
             f,
-            "  The fastest gait at the servos' full rate: {:.2} mm a second predicted, {:.2} tracked ({}), {:.2} times as fast as it",
+            "  The fastest gait at the servos' full rate: {:.2} mm/s predicted, {:.2} mm/s tracked ({}), {:.2} times as fast as the optimised gait at that rate",
             fastest.speed_predicted_m_per_s * 1e3,
             fastest.speed_tracked_m_per_s * 1e3,
             against(

@@ -75,7 +75,7 @@ pub(crate) fn svg(figure: &Figure<'_>) -> Outcome<String> {
             Failure::Tried(format!("cannot draw the map of {}: {reason}", figure.title))
         })?;
     }
-    Ok(finished(&text, size))
+    Ok(finished(&text, size, &figure.title))
 }
 
 fn draw(figure: &Figure<'_>, area: &Area<'_>) -> Result<(), String> {

@@ -77,8 +77,13 @@ pub(crate) struct Task<'a> {
 }
 
 impl Task<'_> {
-    /// Runs the search and measures its duration.
+    /// Runs the search, measures its duration and shows that it goes on.
     fn timed<T>(&self, search: impl FnOnce() -> T) -> T {
+        let _progress = Progress::of_unknown_length("searching; a bounded gait can take a minute");
+        self.measured(search)
+    }
+
+    fn measured<T>(&self, search: impl FnOnce() -> T) -> T {
         let begun = Instant::now();
         let found = search();
         self.seconds.set(begun.elapsed().as_secs_f64());
@@ -88,7 +93,7 @@ impl Task<'_> {
     /// Runs the search, measures its duration and shows its progress.
     fn watched<T>(&self, what: &str, search: impl FnOnce(&(dyn Fn(f64) + Sync)) -> T) -> T {
         let progress = Progress::of_a_whole(what);
-        self.timed(|| search(&|share| progress.at_share(share)))
+        self.measured(|| search(&|share| progress.at_share(share)))
     }
 }
 

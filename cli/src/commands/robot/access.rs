@@ -14,8 +14,9 @@ use swimmer_files::SwimmerFile;
 use super::bench::{Frames, watched};
 use super::find::{self, Answer};
 use super::key::KeyFile;
-use super::port::{AnyPort, BAUD, Means, NotOpen, Opened, Pace, fresh, open};
+use super::port::{AnyPort, BAUD, Fresh, Means, NotOpen, Opened, Pace, fresh, open};
 use super::port_owner::{Ask, HeldBy, Holder, Relayed};
+use crate::arguments::load_swimmer;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
 use crate::link_log::Recorder;
@@ -188,7 +189,7 @@ impl Access {
         Ok(line)
     }
 
-    /// Connects to a fresh virtual robot in whose tank `file` is the truth, and keeps the frames of its cameras.
+    /// Connects to a fresh virtual robot in whose tank the port's swimmer, otherwise `file`, is the truth, and keeps the frames of its cameras.
     ///
     /// # Errors
     /// [`Failure::BadInput`] if the port is another, and as [`connect`](Self::connect).
@@ -199,19 +200,21 @@ impl Access {
         seed: u64,
         frames: &Frames,
     ) -> Outcome<Line> {
-        let carrier = match self.port.as_slice() {
-            [name] => fresh(name).map(|carrier| (name, carrier)),
+        let robot = match self.port.as_slice() {
+            [name] => fresh(name).map(|robot| (name, robot)),
             _ => None,
         };
-        let Some((name, carrier)) = carrier else {
+        let Some((name, Fresh { carrier, swimmer })) = robot else {
             return Err(Failure::BadInput(
                 "--track twin sees a fresh virtual robot: use it with --port twin or --port emulator"
                     .to_owned(),
             ));
         };
+        let named = swimmer.map(load_swimmer).transpose()?;
+        let truth = named.as_ref().unwrap_or(file);
         let recorder = self.recorder()?;
         let opened = Opened {
-            port: watched(carrier.line(file, seed, &self.board)?, frames),
+            port: watched(carrier.line(truth, seed, &self.board)?, frames),
             name: name.clone(),
         };
         self.greeted(opened, self.session()?, recorder, command)
@@ -368,6 +371,11 @@ fn traced(port: AnyPort, recorder: Option<&Recorder>, name: &str) -> AnyPort {
 }
 
 impl Line {
+    /// Returns `true` if the robot is a virtual one that ends with the command.
+    pub(super) fn is_fresh(&self) -> bool {
+        fresh(&self.name).is_some()
+    }
+
     fn new(
         name: String,
         robot: Robot<AnyPort>,

@@ -13,7 +13,7 @@ use super::access::Access;
 use super::port::Pace;
 use crate::arguments::load_robots_swimmer;
 use crate::failure::{Failure, Outcome};
-use crate::output::Output;
+use crate::output::{Output, aside};
 use crate::quantity;
 
 #[derive(Debug, Serialize)]
@@ -68,6 +68,13 @@ pub(super) fn configure(access: &Access, arguments: &Configure, output: Output) 
         max_angle_rad: wanted.max_angle,
         max_rate_rad_s: wanted.max_rate,
     });
+    if line.is_fresh() {
+        aside(&format!(
+            "note: this robot ends with the command and forgets; name the swimmer in the port, as `--port twin:{0}`, or let \
+             `swimmer twin --swimmer {0} --pty /tmp/robot` run and use `--port /tmp/robot`",
+            arguments.swimmer
+        ));
+    }
     line.close()
 }
 

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use host_link::LinkError;
 use host_link::robot::await_play::{at_rest, finished};
-use link_protocol::Status;
+use link_protocol::{Refusal, Status};
 use serde::Serialize;
 
 use super::access::{Access, Line, Met};
@@ -129,12 +129,24 @@ pub(super) fn play(access: &Access, play: &Play, output: Output) -> Outcome {
     let robot = &mut line.robot;
     match robot.arm(false) {
         // Nothing was powered by this, and what the robot does instead is not ours to stop.
+        Err(LinkError::Refused {
+            refusal: Refusal::NoTable,
+            ..
+        }) => return Err(no_gait()),
         Err(refused @ LinkError::Refused { .. }) => return Err(refused.into()),
         armed => stopped_on_failure(robot, armed)?,
     }
     let period = Duration::from_secs_f64(play.period);
     let begun = robot.play_checked(cycles, period, play.detach, checked);
-    stopped_on_failure(robot, begun)?;
+    let has_no_gait = matches!(
+        begun,
+        Err(LinkError::Refused {
+            refusal: Refusal::NoTable,
+            ..
+        })
+    );
+    stopped_on_failure(robot, begun)
+        .map_err(|failure| if has_no_gait { no_gait() } else { failure })?;
     if play.detach {
         let status = robot.status()?;
         output.answer(&Played::new(&status, true));
@@ -150,6 +162,13 @@ pub(super) fn play(access: &Access, play: &Play, output: Output) -> Outcome {
     });
     wait(&mut line, &interrupt, output)?;
     line.close()
+}
+
+fn no_gait() -> Failure {
+    Failure::Tried(
+        "the robot holds no gait: name one, as `swimmer robot play --gait circle:70deg`, or send one with `swimmer robot upload`"
+            .to_owned(),
+    )
 }
 
 /// Refuses a detached play that is too long: it has no link to end it.

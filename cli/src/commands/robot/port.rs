@@ -32,15 +32,31 @@ pub(super) enum Pace {
 /// The names of fresh robots in a virtual tank, and what carries them.
 const FRESH: [(&str, Carrier); 2] = [("twin", Carrier::Twin), ("emulator", Carrier::Emulator)];
 
-/// `true` for the name of a serial port or a pseudo-terminal.
-pub(super) fn is_a_path(name: &str) -> bool {
-    !name.starts_with("tcp:") && FRESH.iter().all(|(fresh, _)| *fresh != name)
+/// Swimmer of a fresh robot if its name has none.
+const USUAL_SWIMMER: &str = "robot";
+
+/// A virtual robot that lasts as long as the command.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Fresh<'a> {
+    pub(super) carrier: Carrier,
+    /// A preset or the path of a swimmer file, if the name has one.
+    pub(super) swimmer: Option<&'a str>,
 }
 
-/// Kind of the fresh virtual robot with this name. Returns `None` for other names.
-pub(super) fn fresh(name: &str) -> Option<Carrier> {
-    let mut fresh = FRESH.into_iter();
-    fresh.find_map(|(known, carrier)| (known == name).then_some(carrier))
+/// Returns `true` if the name is that of a serial port or a pseudo-terminal.
+pub(super) fn is_a_path(name: &str) -> bool {
+    !name.starts_with("tcp:") && fresh(name).is_none()
+}
+
+/// The fresh robot of this name, as `twin` or `twin:SWIMMER`. Returns `None` if the name is another port's.
+pub(super) fn fresh(name: &str) -> Option<Fresh<'_>> {
+    FRESH.into_iter().find_map(|(known, carrier)| {
+        let swimmer = match name.strip_prefix(known)? {
+            "" => None,
+            rest => Some(rest.strip_prefix(':')?),
+        };
+        Some(Fresh { carrier, swimmer })
+    })
 }
 
 /// Settings for the greeting of a robot, and for a fresh virtual one.
@@ -87,8 +103,12 @@ pub(super) fn open(name: &str, means: &Means) -> Result<Opened, NotOpen> {
 }
 
 fn any_port(name: &str, means: &Means) -> Result<AnyPort, NotOpen> {
-    if let Some(carrier) = fresh(name) {
-        let port = carrier.line(&load_swimmer("robot")?, 1, &means.board)?;
+    if let Some(Fresh { carrier, swimmer }) = fresh(name) {
+        let port = carrier.line(
+            &load_swimmer(swimmer.unwrap_or(USUAL_SWIMMER))?,
+            1,
+            &means.board,
+        )?;
         return Ok(match means.pace {
             Pace::AsFastAsPossible => Box::new(port),
             Pace::RealTime => Box::new(Paced::new(port)),
@@ -183,6 +203,21 @@ impl<P: Port> Port for Paced<P> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_fresh_robot_may_name_its_swimmer() {
+        let swimmer = |name| fresh(name).map(|robot| robot.swimmer);
+        assert_eq!(swimmer("twin"), Some(None));
+        assert_eq!(swimmer("twin:ours.toml"), Some(Some("ours.toml")));
+        assert_eq!(
+            swimmer("emulator:C:\\ours.toml"),
+            Some(Some("C:\\ours.toml"))
+        );
+        for path in ["twins", "./twin", "/tmp/twin", "tcp:twin:7000"] {
+            assert_eq!(swimmer(path), None, "{path}");
+        }
+        assert!(is_a_path("/tmp/twin") && !is_a_path("twin:robot"));
+    }
 
     #[test]
     fn an_address_is_a_host_and_a_port() {

@@ -262,7 +262,7 @@ impl MadeFor {
         }
         Err(Failure::Tried(format!(
             "the gait {gait} was made for `{}`, and nothing shows that this robot is that swimmer; name its file with --swimmer \
-             and send it with `swimmer robot configure`, or upload anyway with --force",
+             and send it with `swimmer robot configure` (a twin takes it as `--port twin:FILE`), or upload anyway with --force",
             self.name
         )))
     }

@@ -1,7 +1,5 @@
 //! The report of a calibration as one self-contained HTML page: what its template, `page.html`, cannot say.
 
-use std::path::Path;
-
 use askama::Template;
 use calibrate::evidence::Pair;
 use calibrate::{CampaignFit, Intervals, RunResult};
@@ -59,7 +57,7 @@ pub(crate) fn page(calibration: &Calibration<'_>) -> Outcome<String> {
     let evidence = calibration.evidence;
     let fit = &calibration.found.fit;
     let paper = (fit.sphere_radius, fit.chi);
-    let names = short_names(calibration);
+    let names = numbers(calibration);
     let ways = ways(calibration);
     let bars = |of: fn(&Way) -> [f64; 3], unit| {
         let bars: Vec<_> = ways.iter().map(|way| (way.word(), of(way))).collect();
@@ -194,6 +192,12 @@ impl Page<'_> {
         self.of.answer.runs.iter().zip(&self.found.runs)
     }
 
+    fn has_remarks(&self) -> bool {
+        let answer = self.of.answer;
+        let mut excluded = answer.assessment.iter().flat_map(|of| &of.excluded);
+        answer.runs.iter().any(|run| !run.diagnoses.is_empty()) || excluded.next().is_some()
+    }
+
     fn warnings(&self) -> Vec<String> {
         let outliers = self.of.evidence.outliers.iter().map(|outlier| {
             format!(
@@ -236,20 +240,10 @@ fn over_amplitude(calibration: &Calibration<'_>) -> Outcome<Option<[String; 3]>>
     ]))
 }
 
-/// The runs' names without what their files end in, for axes.
-fn short_names(calibration: &Calibration<'_>) -> Vec<String> {
-    let stem = |name: &str| {
-        // Reported results are distinguished by their line.
-        if let Some((file, line)) = name.rsplit_once(':') {
-            let file = file.rsplit('/').next().unwrap_or(file);
-            return format!("{}:{line}", file.split('.').next().unwrap_or(file));
-        }
-        Path::new(name)
-            .file_stem()
-            .map_or(name.into(), |stem| stem.to_string_lossy().into_owned())
-    };
-    let runs = calibration.answer.runs.iter();
-    runs.map(|run| stem(&run.file)).collect()
+/// Numbers of the runs, as in their table: names of files would cover each other.
+fn numbers(calibration: &Calibration<'_>) -> Vec<String> {
+    let count = calibration.answer.runs.len();
+    (1..=count).map(|number| number.to_string()).collect()
 }
 
 /// Tracks and cycles of every run with a track, those that are not fitted last.

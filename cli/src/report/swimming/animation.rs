@@ -50,7 +50,7 @@ pub(crate) fn animation(swimming: &Swimming) -> Outcome<Vec<u8>> {
 
 fn image(swimming: &Swimming, window: &Window, now: usize) -> Drawing {
     let (width, height) = (f64::from(SIZE.0), f64::from(SIZE.1));
-    let mut drawing = Drawing::new(width, height);
+    let mut drawing = Drawing::new(swimming.name(), width, height);
     drawing.words((16.0, 28.0), TITLE, INK, Anchor::Start, &swimming.title);
     let plane = Plane::new(swimming, PLANE.0, PLANE.1);
     plane.frame(&mut drawing);

@@ -52,6 +52,14 @@ const TIME: [[f64; 3]; 6] = [
 ];
 
 impl Swimming {
+    /// Name of its pictures, for readers of screens.
+    fn name(&self) -> &str {
+        match self.title.as_str() {
+            "" => "The swimmer along its path, and its gait in the plane of the joint angles",
+            title => title,
+        }
+    }
+
     /// A gait as the model swims it.
     pub(crate) fn in_the_model(
         title: String,

@@ -46,7 +46,7 @@ pub(crate) fn snapshots(swimming: &Swimming) -> String {
         (SCENE - 2.0 * AIR, height - 2.0 * AIR),
         scale,
     );
-    let mut drawing = Drawing::new(WIDTH, top + height + BELOW);
+    let mut drawing = Drawing::new(swimming.name(), WIDTH, top + height + BELOW);
     drawing.words((LEFT, 28.0), TITLE, INK, Anchor::Start, &swimming.title);
     bodies_and_path(&mut drawing, &window, swimming, &shown);
     scale_bar(&mut drawing, swimming, scale, top + height + 20.0);
