@@ -53,6 +53,14 @@ pub(crate) fn gain(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Stiffness of a torsion spring on the command line, in N m/rad.
+pub(crate) fn stiffness(text: &str) -> Result<f64, String> {
+    match f64::from_str(text) {
+        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
+        _ => Err("write a stiffness above zero in N m/rad, as 0.002".to_owned()),
+    }
+}
+
 /// A length on the command line, zero or above, in metres.
 pub(crate) fn length(text: &str) -> Result<f64, String> {
     match f64::from_str(text) {

@@ -23,6 +23,7 @@ mod new_folder;
 mod output;
 mod own_robot;
 mod paper;
+mod passive;
 mod picture_file;
 mod playable;
 mod progress;

@@ -75,7 +75,7 @@ pub(crate) fn say_if_beyond(file: &SwimmerFile, gait: &AnyGait, period: f64) {
     say_if_beyond_servos(file, gait, period);
     let model = Model::new(&file.swimmer).ok();
     let load = model.and_then(|model| FluidLoad::new(file, &model, gait, period));
-    for warning in load.iter().flat_map(FluidLoad::warnings) {
+    for warning in load.iter().flat_map(|load| load.warnings(None)) {
         aside(&warning);
     }
 }

@@ -1,8 +1,9 @@
 //! Torque, power and Reynolds number of a gait in the fluid of the swimmer file.
 
 use forecast::{Demand, demand};
+use link_protocol::Joint;
 use serde::Serialize;
-use swimmer_files::{AnyGait, SwimmerFile};
+use swimmer_files::{AnyGait, JointName, SwimmerFile};
 use swimmer_model::Model;
 
 use crate::text::small;
@@ -52,8 +53,9 @@ impl FluidLoad {
         })
     }
 
-    /// Warnings: a Reynolds number at which the model does not hold, and joints that need more torque than their servo has.
-    pub fn warnings(&self) -> Vec<String> {
+    /// Warnings: a Reynolds number at which the model does not hold, and joints that need more torque than their servo has. A passive
+    /// joint has no servo.
+    pub fn warnings(&self, passive: Option<Joint>) -> Vec<String> {
         let mut warnings = Vec::new();
         if self.reynolds > LARGEST_REYNOLDS {
             warnings.push(format!(
@@ -63,7 +65,11 @@ impl FluidLoad {
                 (self.period_s * self.reynolds / LARGEST_REYNOLDS).ceil()
             ));
         }
-        for (joint, torque) in ["front", "back"].iter().zip(self.torque_n_m) {
+        for (joint, torque) in [Joint::Front, Joint::Back].into_iter().zip(self.torque_n_m) {
+            if passive == Some(joint) {
+                continue;
+            }
+            let joint = JointName(joint);
             if let Some(has) = self.servo_torque_n_m.filter(|has| torque > *has) {
                 warnings.push(format!(
                     "warning: the {joint} joint needs {} and its servo has {} ([servo] torque_n_m): the robot lags behind this gait at {} s a cycle",

@@ -15,12 +15,14 @@
 //! # Ok::<(), operations::Error>(())
 //! ```
 
+pub mod best_waveform;
 pub mod bounds;
 pub mod certify;
 mod context;
 mod error;
 pub mod fluid;
 pub mod height_map;
+pub mod passive;
 pub mod played;
 pub mod robot_limits;
 pub mod simulate;

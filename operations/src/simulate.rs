@@ -50,6 +50,9 @@ pub struct Output {
     /// Net motion, over the total length and in SI units.
     #[serde(flatten)]
     pub net: NetMotion,
+    /// Angle of the passive joint at the start of its limit cycle \[rad\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub passive_start_rad: Option<f64>,
     /// The cycle as the robot plays it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub played: Option<PlayedCycle>,
@@ -62,14 +65,23 @@ pub struct Output {
     /// Picture, if the front end drew one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub picture: Option<PathBuf>,
+    /// Gait file of the limit cycle, if the front end wrote one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gait: Option<PathBuf>,
 }
 
 /// Simulates one cycle. Warns if the gait is beyond the servos or the fluid of the swimmer file.
 ///
 /// # Errors
-/// The robot cannot play the gait, and [`Options::played`] is given.
+/// The robot cannot play the gait, and [`Options::played`] is given; or it is given for a passive joint.
 pub fn run(subject: &Subject, options: &Options, context: &mut Context) -> Result<Output, Error> {
-    let Subject { file, model, gait } = subject;
+    let Subject {
+        file,
+        model,
+        gait,
+        response,
+        ..
+    } = subject;
     if let Some(shape) = file.swimmer.singular_shape(gait) {
         return Err(Error::refused(format!(
             "the gait passes the shape ({}, {}), at which the axles of the wheels of `{}` meet in one point or are parallel: A is \
@@ -84,6 +96,11 @@ pub fn run(subject: &Subject, options: &Options, context: &mut Context) -> Resul
             "`{}` is not in a viscous fluid, where the robot swims: leave out what the robot plays",
             file.name
         )));
+    }
+    if options.played.is_some() && response.is_some() {
+        return Err(Error::refused(
+            "--played forecasts two servos, and a passive joint has none: leave it out; `swimmer twin` plays the gait with its spring",
+        ));
     }
     let crossing = crossing_share(&file.swimmer.links, gait);
     let stroke = swim(model, gait, &Tolerance::default());
@@ -105,16 +122,23 @@ pub fn run(subject: &Subject, options: &Options, context: &mut Context) -> Resul
         crossing,
         links_cross: crossing.of_cycle,
         net: (&stroke).into(),
+        passive_start_rad: response.map(|response| response.start),
         played: played.as_ref().map(PlayedCycle::new),
         fluid: FluidLoad::new(file, model, gait, options.period_s),
         trajectory: None,
         picture: None,
+        gait: None,
     };
+    let passive = response.map(|response| response.passive.joint);
+    // The limits are those of servos, which a passive joint does not have.
+    if passive.is_none() {
+        context
+            .warnings
+            .extend(robot_limits::warning(file, gait, options.period_s));
+    }
+    let load = output.fluid.iter();
     context
         .warnings
-        .extend(robot_limits::warning(file, gait, options.period_s));
-    context
-        .warnings
-        .extend(output.fluid.iter().flat_map(FluidLoad::warnings));
+        .extend(load.flat_map(|load| load.warnings(passive)));
     Ok(output)
 }

@@ -8,6 +8,7 @@ use serde_json::Value;
 use swimmer_files::{AnyGait, GaitFile, GaitSpec, GaitSpecError, Provenance, SwimmerFile};
 use swimmer_model::Model;
 
+use crate::passive::Response;
 use crate::{Context, Error, Files};
 
 /// A swimmer: the name of a preset, the path of a swimmer file, or the text of one.
@@ -139,16 +140,16 @@ impl GaitSource {
                 Ok(if reversed { file.reversed() } else { file })
             }
             Resolved::Spec(closed_form) => Ok(GaitFile::sampled(&closed_form.load()?, SAMPLES)),
-            Resolved::Samples(file) => Ok(file),
+            Resolved::Samples(file) => Ok(*file),
         }
     }
 
     fn resolve(&self, files: Files) -> Result<Resolved, Error> {
         let spec = match self {
-            Self::Even(phi) => return Ok(Resolved::Samples(even(phi))),
+            Self::Even(phi) => return Ok(Resolved::Samples(Box::new(even(phi)))),
             Self::Text(text) if text.contains('\n') => {
                 let file = GaitFile::parse(text, Path::new("gait file"))?;
-                return Ok(Resolved::Samples(file));
+                return Ok(Resolved::Samples(Box::new(file)));
             }
             Self::Text(text) => text
                 .parse()
@@ -172,7 +173,7 @@ enum Resolved {
     /// A closed form, or a path that is still to be read.
     Spec(GaitSpec),
     /// Samples, from the text of a file or given as such.
-    Samples(GaitFile),
+    Samples(Box<GaitFile>),
 }
 
 fn curve(file: &GaitFile) -> Result<AnyGait, Error> {
@@ -223,6 +224,10 @@ pub struct Subject {
     pub model: Model<f64>,
     /// The gait.
     pub gait: AnyGait,
+    /// The same as samples, if it was computed as the response of a passive joint.
+    pub samples: Option<GaitFile>,
+    /// The passive joint and its limit cycle; `None` if both joints are driven.
+    pub response: Option<Response>,
 }
 
 impl Subject {
@@ -238,7 +243,13 @@ impl Subject {
         let file = swimmer.load(context)?;
         let gait = gait.load_for(&file, context)?;
         let model = model(&file)?;
-        Ok(Self { file, model, gait })
+        Ok(Self {
+            file,
+            model,
+            gait,
+            samples: None,
+            response: None,
+        })
     }
 }
 

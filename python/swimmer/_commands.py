@@ -23,11 +23,18 @@ def simulate(
     knots: int | None = None,
     pulse_step: int | None = None,
     picture: Text | None = None,
+    passive: Literal["front", "back"] | None = None,
+    stiffness: float | None = None,
+    relaxation: float | None = None,
+    output: Text | None = None,
 ) -> Simulation:
     """Swims a gait in the model: `displacement_over_length`, `rotation_rad`, `efficiency`, … of the first cycle, and the `trajectory`.
 
     With `played` also what the robot will make of it, at `period` seconds a cycle. `picture` is a new file: snapshots along the way
     as .svg or .png, one cycle in motion as .gif.
+
+    A `passive` joint has a spring of this `stiffness` [N m/rad] or `relaxation` time [s] and follows the other one, which the gait
+    or `sine:AMPLITUDE` drives. `output` is a new gait file of its limit cycle.
     """
     with Run("simulate") as run:
         run.swimmer(swimmer)
@@ -40,6 +47,10 @@ def simulate(
                 "knots": knots,
                 "pulse_step": pulse_step,
                 "picture": picture,
+                "passive": passive,
+                "stiffness": stiffness,
+                "relaxation": relaxation,
+                "output": output,
             }
         )
         table = run.place("trajectory.csv")

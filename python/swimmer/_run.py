@@ -16,7 +16,7 @@ Document: TypeAlias = dict[str, Any]
 Text: TypeAlias = str | os.PathLike[str]
 
 
-PRESETS = ("purcell", "robot", "robot-slender", "perfect-fluid", "kinematic-snake")
+PRESETS = ("purcell", "robot", "robot-slender", "perfect-fluid", "kinematic-snake", "elastic-tail")
 
 
 class Doubt(UserWarning):

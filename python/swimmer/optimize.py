@@ -8,7 +8,7 @@ from ._run import Run, Text
 from ._swimmer import Gait, Swimmer
 from .results import OptimalGait, Result
 
-__all__ = ["displacement", "efficiency", "sideways", "speed", "steer", "turning"]
+__all__ = ["displacement", "efficiency", "passive", "sideways", "speed", "steer", "turning"]
 
 Angle: TypeAlias = float | str
 """Radians, or a text with its unit: `70deg`."""
@@ -134,6 +134,30 @@ def steer(
                 "output": output,
             }
         )
+        return Result(run.document())
+
+
+def passive(
+    swimmer: Swimmer | Text,
+    *,
+    passive: Literal["front", "back"] | None = None,
+    stiffness: float | None = None,
+    relaxation: float | Literal["free"] | None = None,
+    most: Literal["displacement", "speed", "efficiency"] | None = None,
+    period: float | None = None,
+    max_angle: Angle | None = None,
+    max_rate: Angle | None = None,
+    harmonics: int | None = None,
+    output: Text | None = None,
+) -> Result:
+    """The best waveform of one servo while the `passive` joint has a spring: `waveform`, `period_s`, `gain_over_sine`, …
+
+    `output` is a new gait file.
+    """
+    options = {key: value for key, value in locals().items() if key != "swimmer"}
+    with Run("optimize", "passive") as run:
+        run.swimmer(swimmer)
+        run.options(options)
         return Result(run.document())
 
 

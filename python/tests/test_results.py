@@ -128,6 +128,7 @@ def test_files_of_ours_are_named_shortly(robot: sw.Swimmer, purcell: sw.Swimmer)
         (sw.optimize.sideways, ["optimize", "sideways"], {"output"}),
         (sw.optimize.speed, ["optimize", "speed"], {"output"}),
         (sw.optimize.steer, ["optimize", "steer"], set()),
+        (sw.optimize.passive, ["optimize", "passive"], set()),
         (sw.plan, ["plan"], set()),
         (sw.sweep.plan, ["sweep", "plan"], set()),
         (sw.sweep.run, ["sweep", "run"], set()),

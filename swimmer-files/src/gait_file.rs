@@ -16,7 +16,7 @@ pub use bounds::Bounds;
 use nalgebra::Vector2;
 
 use crate::place::read_text;
-use crate::{FileError, SwimmerHash, write_atomically};
+use crate::{FileError, GaitSpring, SwimmerHash, write_atomically};
 
 /// Objective that a gait was optimised for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -88,6 +88,8 @@ pub struct GaitFile {
     pub bounds: Bounds,
     /// Period \[s\] in which a gait for speed is the farthest; `None` if it is the fastest of any period.
     pub optimal_period: Option<f64>,
+    /// The passive joint, if the gait is the response of a spring; `None` if both joints are driven.
+    pub passive: Option<GaitSpring>,
     /// Its arcs in order, where known.
     pub arcs: Vec<GaitArc>,
     /// Fractions of the period at which the direction in the (φ₁, φ₂) plane jumps.

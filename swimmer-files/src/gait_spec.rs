@@ -249,6 +249,11 @@ impl GaitSpec {
             } => AnyGait::square(*amplitude).reversed_if(*clockwise),
             Self::File { path, reversed } => {
                 let file = read(path)?;
+                if *reversed && file.passive.is_some() {
+                    let problem = "the joint that this gait names as passive follows a spring: run backwards, the gait is not its \
+                         response; leave out :cw";
+                    return Err(FileError::at(path, 1, 1, problem).into());
+                }
                 AnyGait::from_file(&file)
                     .map_err(|invalid| FileError::at(path, 1, 1, invalid.to_string()))?
                     .reversed_if(*reversed)

@@ -44,6 +44,7 @@ mod place;
 mod playlist;
 mod provenance;
 mod quantity;
+mod spring;
 mod swimmer_file;
 mod toml_text;
 
@@ -67,4 +68,5 @@ pub use place::FileError;
 pub use playlist::{Playlist, PlaylistStep};
 pub use provenance::{InputHash, Provenance, hash_of};
 pub use quantity::{AngleError, Quantity, Slip, parse_angle, parse_rate};
+pub use spring::{GaitSpring, JointName, PassiveFile, Spring};
 pub use swimmer_file::{Fluid, ServoFile, SwimmerFile};

@@ -6,10 +6,11 @@ mod write;
 
 use std::path::Path;
 
+use link_protocol::Joint;
 use swimmer_model::{Link, Swimmer};
 
 use crate::place::read_text;
-use crate::{FileError, SwimmerHash, write_atomically};
+use crate::{FileError, JointName, PassiveFile, Spring, SwimmerHash, write_atomically};
 
 /// Contents of a swimmer file.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,6 +23,8 @@ pub struct SwimmerFile {
     pub fluid: Option<Fluid>,
     /// The servos; `None` means ideal ones.
     pub servo: Option<ServoFile>,
+    /// A joint with a spring in place of its servo; `None` if both joints have servos.
+    pub passive: Option<PassiveFile>,
 }
 
 /// The `[fluid]` table.
@@ -77,22 +80,35 @@ impl Default for ServoFile {
 
 impl SwimmerFile {
     /// The presets' names, as [`SwimmerFile::preset`] takes them.
-    pub const PRESETS: [&'static str; 5] = [
+    pub const PRESETS: [&'static str; 6] = [
         "purcell",
         "robot",
         "robot-slender",
         "perfect-fluid",
         "kinematic-snake",
+        "elastic-tail",
     ];
 
     /// Returns a preset by its name, one of [`SwimmerFile::PRESETS`]; none of them names a fluid or servos.
+    ///
+    /// `elastic-tail` is Purcell's swimmer with a torsion spring at the back joint: E. Passov and Y. Or, *Dynamics of Purcell's
+    /// three-link microswimmer with a passive elastic tail*, Eur. Phys. J. E 35, 78 (2012). Its stiffness over `c_t l³` is 1/s.
     pub fn preset(name: &str) -> Option<Self> {
+        let mut passive = None;
         let swimmer = match name {
             "purcell" => Swimmer::purcell(),
             "robot" => Swimmer::robot(),
             "robot-slender" => Swimmer::robot_slender(),
             "perfect-fluid" => Swimmer::perfect_fluid(),
             "kinematic-snake" => Swimmer::kinematic_snake(),
+            "elastic-tail" => {
+                passive = Some(PassiveFile {
+                    joint: JointName(Joint::Back),
+                    // W₂₂ of the straight swimmer is 16/81 c_t l³.
+                    spring: Spring::Relaxation(16.0 / 81.0),
+                });
+                Swimmer::purcell()
+            }
             _ => return None,
         };
         Some(Self {
@@ -100,6 +116,7 @@ impl SwimmerFile {
             swimmer,
             fluid: None,
             servo: None,
+            passive,
         })
     }
 

@@ -5,10 +5,11 @@ use gait_player::servo::plant::PlantParameters;
 use gait_player::storage::MemoryStorage;
 use gait_player::{Boot, Brain, BrainConfig, Identity, Limits, Transport};
 use link_protocol::{Board, Configuration, FirmwareVersion, ResetReason, ServoSettings};
+use passive_joint::{PassiveJoint, over_viscosity};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use swimmer_files::{ServoFile, SwimmerFile};
-use swimmer_model::{Scalar, Swimmer, TangentialDrag, UncommonDrag};
+use swimmer_model::{Model, Scalar, Swimmer, TangentialDrag, UncommonDrag};
 
 use crate::camera::CameraConfig;
 
@@ -32,6 +33,8 @@ pub struct TwinConfig {
     pub servos: [ServoSettings; 2],
     /// True servo maps, from pulse to shaft angle. A robot that has not been set up yet does not know them.
     pub shafts: [ServoMap; 2],
+    /// A joint with a spring in place of its servo, with κ over one second; its pulses have no effect.
+    pub passive: Option<PassiveJoint>,
     /// Battery voltage, mV; the low-battery limit is 4400.
     pub battery_mv: u16,
     /// Cameras over the tank.
@@ -54,7 +57,10 @@ impl TwinConfig {
     /// The brain is configured for that swimmer, like a robot that its laboratory has set up: a gait for the file can be
     /// uploaded at once. To simulate unknown drag, configure it otherwise over the link.
     pub fn new(file: &SwimmerFile, seed: u64) -> Self {
-        Self::from_parts(file.swimmer, &file.servo.unwrap_or_default(), seed)
+        Self {
+            passive: spring(file),
+            ..Self::from_parts(file.swimmer, &file.servo.unwrap_or_default(), seed)
+        }
     }
 
     /// Configuration for any swimmer with any servos.
@@ -97,6 +103,7 @@ impl TwinConfig {
             swimmer,
             servos: [settings; 2],
             shafts: [settings.into(); 2],
+            passive: None,
             battery_mv: 5_200,
             camera: CameraConfig::default(),
             flash: MemoryStorage::erased(),
@@ -142,6 +149,15 @@ impl TwinConfig {
             },
         })
     }
+}
+
+/// The passive joint of a file over one second. A file that was read has a fluid for a stiffness.
+fn spring(file: &SwimmerFile) -> Option<PassiveJoint> {
+    let passive = file.passive?;
+    let model = Model::new(&file.swimmer).ok()?;
+    let joint = passive.joint.0;
+    let kappa = over_viscosity(passive.spring, &model, joint, file.fluid.as_ref()).ok()?;
+    PassiveJoint::new(joint, kappa).ok()
 }
 
 /// Configuration message for a swimmer with the limits of its servos. The front and back links may differ.

@@ -14,7 +14,7 @@ use nalgebra::Vector2;
 /// let config = TwinConfig::new(&SwimmerFile::preset("robot").unwrap(), 1).with_ideal_servos();
 /// let mut servos = Servos::new(config.shafts, config.plant);
 /// servos.set_pulses(Some([1_510_000; 2]));
-/// servos.advance(2.0, |_| {});
+/// servos.advance(2.0, |_, _| {});
 /// // 10 µs of pulse at 0.0274 rad/µs, as near as the servos of this seed are made.
 /// assert!((servos.angles()[0].abs() - 0.274).abs() < 0.15, "{:?}", servos.angles());
 /// ```
@@ -50,10 +50,11 @@ impl Servos {
         });
     }
 
-    /// Advances by `seconds`. `visit` receives each vertex of the path; between two of them both angles change at constant
-    /// rates.
-    pub fn advance(&mut self, seconds: f64, mut visit: impl FnMut(Vector2<f64>)) {
+    /// Advances by `seconds`. `visit` receives each vertex of the path and the time since the vertex before it \[s\]; between two of
+    /// them both angles change at constant rates.
+    pub fn advance(&mut self, seconds: f64, mut visit: impl FnMut(Vector2<f64>, f64)) {
         let Some(command) = self.command else {
+            visit(Vector2::from(self.angles()), seconds);
             return;
         };
         let rests: [f64; 2] = std::array::from_fn(|joint| {
@@ -65,8 +66,8 @@ impl Servos {
                 for (shaft, command) in self.shafts.iter_mut().zip(command) {
                     shaft.advance(&self.plant, command, vertex - now);
                 }
+                visit(Vector2::from(self.angles()), vertex - now);
                 now = vertex;
-                visit(Vector2::from(self.angles()));
             }
         }
     }
@@ -87,7 +88,7 @@ mod tests {
         let mut servos = Servos::new([map; 2], plant);
         servos.set_pulses(Some([map.pulse_ns(0.01), map.pulse_ns(-1.0)]));
         let mut path = Vec::new();
-        servos.advance(0.02, |phi| path.push(phi));
+        servos.advance(0.02, |phi, _| path.push(phi));
         assert_eq!(path.len(), 2);
         assert!(
             (path[0] - Vector2::new(0.01, -0.01)).norm() < 2e-5,
@@ -104,9 +105,10 @@ mod tests {
         let map = ServoMap::ROBOT;
         let mut servos = Servos::new([map; 2], PlantParameters::IDEAL);
         servos.set_pulses(Some([map.pulse_ns(0.5); 2]));
-        servos.advance(0.02, |_| {});
+        servos.advance(0.02, |_, _| {});
+        let held = Vector2::from(servos.angles());
         servos.set_pulses(None);
-        servos.advance(1.0, |_| unreachable!("nothing moves"));
+        servos.advance(1.0, |phi, seconds| assert_eq!((phi, seconds), (held, 1.0)));
         assert!((servos.angles()[0] - 0.5).abs() < 2e-5);
     }
 }

@@ -1,11 +1,14 @@
 //! Virtual tank: moves the swimmer along the joint path by the local connection of the model, ġ = g A(Φ) Φ̇.
 
 use nalgebra::{Vector2, Vector3};
+use passive_joint::PassiveJoint;
 use swimmer_model::{InvalidSwimmer, Model, Pose, Swimmer};
 
 /// Longest piece of a joint path per integration step, rad. The method has order four: at 0.02 rad a step's error is of the
 /// order of 1e-9 of the swimmer's length.
 const LONGEST_PIECE: f64 = 0.02;
+/// Longest piece of a passive joint's path, in relaxation times.
+const LONGEST_RELAXATION: f64 = 0.05;
 
 /// Swimmer in a quiescent, very viscous fluid.
 ///
@@ -27,6 +30,8 @@ pub struct Tank {
     model: Model<f64>,
     phi: Vector2<f64>,
     pose: Pose<f64>,
+    /// A joint that a spring holds in place of a servo, with κ over one second: k/μ.
+    passive: Option<PassiveJoint>,
 }
 
 impl Tank {
@@ -39,6 +44,7 @@ impl Tank {
             model: Model::new(swimmer)?,
             phi: Vector2::zeros(),
             pose,
+            passive: None,
         })
     }
 
@@ -50,6 +56,47 @@ impl Tank {
     /// Joint angles Φ, rad.
     pub fn phi(&self) -> Vector2<f64> {
         self.phi
+    }
+
+    /// The same with a spring in place of a servo. κ of the passive joint is that of one second.
+    #[must_use]
+    pub fn with_spring(self, passive: PassiveJoint) -> Self {
+        Self {
+            passive: Some(passive),
+            ..self
+        }
+    }
+
+    /// Follows the servos to `servos` \[rad\] in `seconds`. A passive joint turns by its spring and the drag; its servo is ignored.
+    pub fn follow(&mut self, servos: Vector2<f64>, seconds: f64) {
+        let Some(passive) = self.passive else {
+            self.move_joints(servos);
+            return;
+        };
+        let (driven, joint) = (passive.driven().index(), passive.joint.index());
+        let start = self.phi[driven];
+        let way = servos[driven] - start;
+        let relaxations = seconds / passive.relaxation_share(&self.model);
+        let pieces = (way.abs() / LONGEST_PIECE)
+            .max(relaxations / LONGEST_RELAXATION)
+            .ceil();
+        if !(pieces >= 1.0 && pieces.is_finite()) {
+            return;
+        }
+        let piece_spring = PassiveJoint {
+            kappa: passive.kappa * seconds / pieces,
+            ..passive
+        };
+        let mut piece = 0.0;
+        while piece < pieces {
+            let to = start + way * (piece + 1.0) / pieces;
+            let angle = self.phi[joint];
+            let angle = piece_spring
+                .follow(&self.model, [self.phi[driven], to], angle)
+                .unwrap_or(angle);
+            self.move_joints(passive.shape(to, angle));
+            piece += 1.0;
+        }
     }
 
     /// Moves the joints on a straight line to `phi`. The rate does not matter without inertia.
@@ -148,6 +195,22 @@ mod tests {
                 && (pose.y - 0.2).abs() < 1e-12
                 && (pose.theta - 1.0).abs() < 1e-12
         );
+    }
+
+    /// exp(−t/τ) of a small angle, the driven joint at rest.
+    #[test]
+    fn a_passive_joint_relaxes_in_its_time() {
+        let swimmer = Swimmer::robot();
+        let model = Model::new(&swimmer).unwrap();
+        let spring = PassiveJoint::relaxing_in(&model, link_protocol::Joint::Back, 2.0).unwrap();
+        let mut tank = Tank::new(&swimmer, Pose::identity())
+            .unwrap()
+            .with_spring(spring);
+        tank.move_joints(Vector2::new(0.0, 1e-3));
+        tank.follow(Vector2::new(0.0, 0.7), 3.0);
+        let share = tank.phi().y / 1e-3;
+        assert!((share - (-1.5_f64).exp()).abs() < 1e-6, "{share}");
+        assert!(tank.phi().x.abs() < 1e-15);
     }
 
     #[test]

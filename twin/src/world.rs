@@ -99,9 +99,14 @@ impl World {
         rng.set_stream(3);
         let mut draw = |largest: f64| rng.random_range(-largest..largest);
         let pose = Pose::new(draw(0.2), draw(0.2), draw(std::f64::consts::PI));
+        let tank = Tank::new(&config.swimmer, pose)?;
+        let tank = match config.passive {
+            Some(passive) => tank.with_spring(passive),
+            None => tank,
+        };
         Ok(Self {
             servos: Servos::new(config.shafts, config.plant),
-            tank: Tank::new(&config.swimmer, pose)?,
+            tank,
             now_us: 0,
             reach: 0.5 * config.swimmer.links.middle,
             camera: config.camera.clone(),
@@ -130,7 +135,7 @@ impl World {
 
     /// True joint angles, rad.
     pub fn angles(&self) -> [f64; 2] {
-        self.servos.angles()
+        self.tank.phi().into()
     }
 
     /// Sets new pulses of the servos, ns, or switches them off.
@@ -280,7 +285,8 @@ impl World {
     fn move_until(&mut self, until_us: u64) {
         let seconds = until_us.saturating_sub(self.now_us) as f64 * 1e-6;
         let tank = &mut self.tank;
-        self.servos.advance(seconds, |phi| tank.move_joints(phi));
+        self.servos
+            .advance(seconds, |phi, seconds| tank.follow(phi, seconds));
         self.now_us = until_us;
     }
 

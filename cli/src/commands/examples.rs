@@ -3,7 +3,7 @@
 use clap::Command;
 
 /// The words of a command, and what is typed after `swimmer`.
-pub(super) const EXAMPLES: [(&str, &str); 60] = [
+pub(super) const EXAMPLES: [(&str, &str); 61] = [
     ("demo", "demo --swimmer robot -o demo"),
     (
         "simulate",
@@ -32,6 +32,10 @@ pub(super) const EXAMPLES: [(&str, &str); 60] = [
     (
         "optimize steer",
         "optimize steer --swimmer robot --playable -o gaits",
+    ),
+    (
+        "optimize passive",
+        "optimize passive --swimmer elastic-tail --max-angle 1 -o tail.gait",
     ),
     (
         "atlas",

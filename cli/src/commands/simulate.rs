@@ -5,16 +5,17 @@ pub(crate) mod played;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use operations::{Context, GaitSource, Subject, SwimmerSource, simulate};
-use swimmer_files::{AnyGait, GaitSpec, write_atomically};
+use operations::passive::{self, Drive};
+use operations::{Context, Subject, SwimmerSource, simulate};
+use swimmer_files::{AnyGait, write_atomically};
 use swimmer_model::{Model, Pose, Tolerance, trajectory};
 
-use crate::arguments::gait;
 use crate::csv_text::csv_text;
-use crate::failure::Outcome;
+use crate::failure::{Failure, Outcome};
 use crate::in_fluid::fluid_rows;
 use crate::new_file::may_be_written;
 use crate::output::{Output, asides};
+use crate::passive::{PassiveOptions, passive_row};
 use crate::picture_file::Kind;
 use crate::quantity::{self, Rows};
 use crate::report::style::number;
@@ -28,9 +29,10 @@ pub(crate) struct Simulate {
     /// A preset that `swimmer swimmers` lists, or a swimmer file
     #[arg(long, value_name = "SWIMMER")]
     swimmer: String,
-    /// circle:AMPLITUDE, square:AMPLITUDE or a gait file; add :cw to reverse it
-    #[arg(long, value_name = "GAIT", value_parser = gait)]
-    gait: GaitSpec,
+    /// circle:AMPLITUDE, square:AMPLITUDE or a gait file; add :cw to reverse it. With a passive joint only the other joint of it is
+    /// driven, and sine:AMPLITUDE drives it with AMPLITUDE cos 2πu
+    #[arg(long, value_name = "GAIT")]
+    gait: Drive,
     /// How many cycles the trajectory and the snapshots have; the printed values are always those of the first
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     cycles: u32,
@@ -42,12 +44,18 @@ pub(crate) struct Simulate {
     picture: Option<PathBuf>,
     #[command(flatten)]
     playing: played::Playing,
+    #[command(flatten)]
+    passive: PassiveOptions,
+    /// Write the limit cycle of a passive joint as a gait file, which names the joint
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
 }
 
 /// Output as text.
 struct Text<'a> {
     title: &'a str,
     output: &'a simulate::Output,
+    response: Option<passive::Response>,
 }
 
 impl fmt::Display for Text<'_> {
@@ -88,6 +96,9 @@ impl fmt::Display for Text<'_> {
             "links cross",
             quantity::crossing_or_folding(&output.crossing),
         );
+        if let Some(response) = &self.response {
+            passive_row(response, &mut rows);
+        }
         if let Some(played) = &output.played {
             played_rows(played, &mut rows);
         }
@@ -96,6 +107,9 @@ impl fmt::Display for Text<'_> {
         }
         if let Some(path) = &output.trajectory {
             rows.row("written to", path.display().to_string());
+        }
+        if let Some(path) = &output.gait {
+            rows.row("gait written to", path.display().to_string());
         }
         if let Some(path) = &output.picture {
             rows.row("drawn to", drawn(path));
@@ -111,11 +125,14 @@ impl Simulate {
     /// Simulates the gait, writes trajectory and picture, and prints the output.
     pub(crate) fn run(self, output: Output) -> Outcome {
         self.trajectory.as_deref().map_or(Ok(()), may_be_written)?;
+        self.output.as_deref().map_or(Ok(()), may_be_written)?;
         let kind = self.picture.as_deref().map(picture_kind).transpose()?;
         let mut context = Context::on_disk();
-        let subject = Subject::load(
+        let subject = Subject::load_driven(
             &SwimmerSource::from(self.swimmer.as_str()),
-            &GaitSource::from(self.gait.clone()),
+            &self.gait,
+            &self.passive.options(),
+            self.playing.period,
             &mut context,
         )
         .and_then(|subject| {
@@ -123,7 +140,23 @@ impl Simulate {
             Ok((subject, simulated))
         });
         asides(&context);
-        let (Subject { file, model, gait }, mut simulated) = subject?;
+        let (subject, mut simulated) = subject?;
+        if let Some(path) = &self.output {
+            let Some(samples) = &subject.samples else {
+                return Err(Failure::BadInput(
+                    "-o writes the limit cycle of a passive joint: name the joint by --passive, and its spring".to_owned(),
+                ));
+            };
+            samples.save(path)?;
+            simulated.gait = Some(path.clone());
+        }
+        let Subject {
+            file,
+            model,
+            gait,
+            response,
+            ..
+        } = subject;
         simulated.trajectory.clone_from(&self.trajectory);
         simulated.picture.clone_from(&self.picture);
         let title = format!("{}, {}", file.name, self.gait.readable());
@@ -145,6 +178,7 @@ impl Simulate {
             &Text {
                 title: &title,
                 output: &simulated,
+                response,
             },
         );
         Ok(())

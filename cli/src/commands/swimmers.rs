@@ -71,6 +71,9 @@ fn presets() -> Document {
             "robot" => "the paper's robot, its drag fitted",
             "perfect-fluid" => "ellipses in a perfect fluid (Hatton, Choset 2013)",
             "kinematic-snake" => "links on wheels (Shammas, Choset, Rizzi 2007)",
+            "elastic-tail" => {
+                "Purcell's swimmer with a spring at the back joint (Passov and Or, 2012)"
+            }
             _ => "the paper's robot as slender-body theory has it",
         };
         let links = &swimmer.links;

@@ -70,7 +70,7 @@ impl Row {
     }
 }
 
-const ROWS: [Row; 51] = [
+const ROWS: [Row; 53] = [
     row("demo --swimmer good.toml -o out")
         .reads("good.toml")
         .writes("out")
@@ -78,6 +78,12 @@ const ROWS: [Row; 51] = [
     row("simulate --swimmer good.toml --gait circle:1 --trajectory t.csv")
         .reads("good.toml")
         .writes("t.csv"),
+    row("simulate --swimmer good.toml --gait sine:1 --passive back --relaxation 5 -o o.gait")
+        .reads("good.toml")
+        .writes("o.gait"),
+    row("optimize passive --swimmer good.toml --passive back --relaxation 5 --max-angle 1 -o o.gait")
+        .reads("good.toml")
+        .writes("o.gait"),
     row("optimize displacement --swimmer good.toml --max-angle 2.8 -o o.gait")
         .reads("good.toml")
         .writes("o.gait"),

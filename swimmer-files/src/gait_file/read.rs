@@ -164,6 +164,7 @@ fn header_line(file: &mut GaitFile, line: GaitLine<'_>) -> Result<Option<f64>, F
         "swimmer_hash" => file.swimmer_hash = Some(line.word(value)?),
         "optimal_period" => file.optimal_period = optimal_period(line, value)?,
         "bounds" => file.bounds = bounds(line, value)?,
+        "passive" => file.passive = Some(line.word(value)?),
         "arc" => file.arcs.push(arc(line, value)?),
         "corner" => {
             let corner = line.fraction(value)?;
@@ -178,7 +179,7 @@ fn header_line(file: &mut GaitFile, line: GaitLine<'_>) -> Result<Option<f64>, F
         }
         unknown => {
             let problem = format!(
-                "unknown key `{unknown}`: the keys are objective, swimmer, swimmer_hash, optimal_period, bounds, arc and corner"
+                "unknown key `{unknown}`: the keys are objective, swimmer, swimmer_hash, optimal_period, bounds, passive, arc and corner"
             );
             return Err(line.error(key.trim(), problem));
         }

@@ -14,6 +14,8 @@ const ABOUT: &str = "\
 ##   optimal_period of a fastest gait: the period in s for which it goes farthest, or `none`: fastest of any period
 ##   bounds         max_angle and min_angle in rad or `none`; sector and no_overlap `true` or `false`;
 ##                  clearance_m the least distance of the side links in metres
+##   passive        front or back: this joint has a spring, not a servo, and its samples are the response; then
+##                  relaxation=SHARE, its relaxation time over the period
 ##   arc            kind (singular, upper, lower, diagonal, clearance, regular, extreme), then from and to in u; in order
 ##   corner         a u where the direction in the (phi1, phi2) plane jumps; the curve is smooth between corners
 ## Then, after the line `u,phi1,phi2`, the samples: u is the fraction of the period, rising from 0 to 1; the joint angles
@@ -53,6 +55,9 @@ fn write_all(text: &mut String, file: &GaitFile) -> std::fmt::Result {
         bounds.no_overlap,
         bounds.clearance
     )?;
+    if let Some(passive) = &file.passive {
+        writeln!(text, "# passive: {passive}")?;
+    }
     for arc in &file.arcs {
         writeln!(
             text,

@@ -9,7 +9,8 @@ use toml::Spanned;
 
 use super::{Fluid, ServoFile, SwimmerFile};
 use crate::swimmer_file::per_link::{LinkNumbers, OneOrPerLink};
-use crate::{FileError, Quantity};
+
+use crate::{FileError, PassiveFile, Quantity, Spring};
 
 type Number = Spanned<f64>;
 
@@ -23,6 +24,7 @@ struct RawFile {
     sphere: Option<Spanned<RawSphere>>,
     fluid: Option<Spanned<RawFluid>>,
     servo: Option<RawServo>,
+    passive: Option<Spanned<RawPassive>>,
     /// Says where the file comes from, not what swims.
     #[serde(rename = "provenance")]
     _provenance: Option<crate::Provenance>,
@@ -100,6 +102,14 @@ struct RawServo {
     centre_us: Option<Number>,
     torque_n_m: Option<Number>,
     no_load_rate: Option<Number>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawPassive {
+    joint: Spanned<String>,
+    relaxation_s: Option<Number>,
+    stiffness_n_m: Option<Number>,
 }
 
 /// A TOML text being read: makes errors with places out of byte ranges.
@@ -207,6 +217,7 @@ pub(super) fn swimmer_file(text: &str, path: &Path) -> Result<SwimmerFile, FileE
             format!("this swimmer cannot be: {invalid}"),
         )
     })?;
+    let has_fluid = raw.fluid.is_some();
     Ok(SwimmerFile {
         name: raw.name.unwrap_or_else(|| stem(path)),
         swimmer,
@@ -215,6 +226,10 @@ pub(super) fn swimmer_file(text: &str, path: &Path) -> Result<SwimmerFile, FileE
             .map(|raw| fluid(&source, raw.get_ref()))
             .transpose()?,
         servo: raw.servo.map(|raw| servo(&source, &raw)).transpose()?,
+        passive: raw
+            .passive
+            .map(|raw| passive(&source, &raw, has_fluid))
+            .transpose()?,
     })
 }
 
@@ -415,6 +430,34 @@ fn servo(source: &Source<'_>, raw: &RawServo) -> Result<ServoFile, FileError> {
             .map(|number| source.quantity("no_load_rate", number, Quantity::Rate))
             .transpose()?,
     })
+}
+
+fn passive(
+    source: &Source<'_>,
+    raw: &Spanned<RawPassive>,
+    has_fluid: bool,
+) -> Result<PassiveFile, FileError> {
+    let table = raw.get_ref();
+    let joint = table.joint.get_ref().parse().map_err(|problem| {
+        source.error(
+            &table.joint.span(),
+            format!("joint = \"{}\": {problem}", table.joint.get_ref()),
+        )
+    })?;
+    let spring = match (&table.relaxation_s, &table.stiffness_n_m) {
+        (Some(time), None) => Spring::Relaxation(source.positive("relaxation_s", time)?),
+        (None, Some(stiffness)) if !has_fluid => {
+            let problem = "stiffness_n_m needs the viscosity: add [fluid], or give relaxation_s";
+            return Err(source.error(&stiffness.span(), problem));
+        }
+        (None, Some(stiffness)) => Spring::Stiffness(source.positive("stiffness_n_m", stiffness)?),
+        _ => {
+            let problem =
+                "[passive] needs `relaxation_s` or `stiffness_n_m` (N m/rad), one of them";
+            return Err(source.error(&raw.span(), problem));
+        }
+    };
+    Ok(PassiveFile { joint, spring })
 }
 
 /// Half-width of a dead band beyond which no servo is of use, and degrees were meant \[rad\].

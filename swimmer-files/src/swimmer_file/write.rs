@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use swimmer_model::{Link, Links, Medium, Swimmer, TangentialDrag};
 
 use super::SwimmerFile;
+use crate::Spring;
 
 pub(super) fn swimmer_toml(file: &SwimmerFile) -> String {
     let mut text = String::with_capacity(800);
@@ -66,6 +67,16 @@ fn write_tables(text: &mut String, file: &SwimmerFile) -> std::fmt::Result {
         }
         if let Some(rate) = servo.no_load_rate {
             writeln!(text, "no_load_rate = {rate:?}      # rad/s")?;
+        }
+    }
+    if let Some(passive) = &file.passive {
+        writeln!(text, "\n[passive]")?;
+        writeln!(text, "joint = \"{}\"", passive.joint)?;
+        match passive.spring {
+            Spring::Relaxation(time) => writeln!(text, "relaxation_s = {time:?}      # s")?,
+            Spring::Stiffness(stiffness) => {
+                writeln!(text, "stiffness_n_m = {stiffness:?}     # N m/rad")?;
+            }
         }
     }
     Ok(())

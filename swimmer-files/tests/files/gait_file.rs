@@ -3,9 +3,13 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use link_protocol::Joint;
 use nalgebra::Vector2;
 use proptest::prelude::*;
-use swimmer_files::{ArcKind, Bounds, FileError, GaitArc, GaitFile, Objective, SwimmerFile};
+use swimmer_files::{
+    ArcKind, Bounds, FileError, GaitArc, GaitFile, GaitSpec, GaitSpring, JointName, Objective,
+    SwimmerFile,
+};
 
 fn read(text: &str) -> Result<GaitFile, FileError> {
     GaitFile::parse(text, Path::new("b.gait"))
@@ -207,6 +211,7 @@ prop_compose! {
         let swimmer_name = name.map(|name| name.split_whitespace().collect::<Vec<_>>().join(" "));
         GaitFile {
             objective, swimmer_name, swimmer_hash: None, bounds: Bounds { max_angle, min_angle, sector, no_overlap, clearance },
+            passive: sector.then(|| GaitSpring { joint: JointName(Joint::Front), relaxation: 0.1 + u[1] }),
             arcs, corners, u, phi, optimal_period,
         }
     }
@@ -230,5 +235,35 @@ proptest! {
         let at = at.min(text.len() - 1);
         let damaged = if cut { text[..at].to_owned() } else { format!("{}{with}{}", &text[..at], &text[at + 1..]) };
         let _ = read(&damaged);
+    }
+}
+
+#[test]
+fn a_passive_joint_is_named_and_the_gait_is_not_reversed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("tail.gait");
+    let file = GaitFile {
+        passive: Some("back relaxation=0.35".parse().unwrap()),
+        ..circle(16)
+    };
+    file.save(&path).unwrap();
+    assert_eq!(GaitFile::load(&path).unwrap(), file);
+    let spec = |reversed| GaitSpec::File {
+        path: path.clone(),
+        reversed,
+    };
+    assert!(spec(false).load().is_ok());
+    let error = spec(true).load().unwrap_err().to_string();
+    assert!(error.contains("follows a spring"), "{error}");
+    for wrong in [
+        "back",
+        "back relaxation=0",
+        "side relaxation=1",
+        "back relaxation=nan",
+    ] {
+        let named = "back relaxation=0.35";
+        let text = file.to_text().replace(named, wrong);
+        let error = GaitFile::parse(&text, "tail.gait".as_ref()).unwrap_err();
+        assert!(error.to_string().contains("joint is"), "{error}");
     }
 }

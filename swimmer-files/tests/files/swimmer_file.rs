@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use link_protocol::Joint;
 use proptest::prelude::*;
-use swimmer_files::{Fluid, ServoFile, SwimmerFile};
+use swimmer_files::{Fluid, JointName, PassiveFile, ServoFile, Spring, SwimmerFile};
 use swimmer_model::{Link, Links, Medium, Swimmer, TangentialDrag};
 
 const EXAMPLE: &str = r#"name = "our robot"
@@ -328,6 +329,7 @@ prop_compose! {
                 swimmer: Swimmer { links, medium, ..Swimmer::purcell() },
                 fluid: None,
                 servo: None,
+                passive: None,
             };
         }
         SwimmerFile {
@@ -356,6 +358,10 @@ prop_compose! {
                 torque: (dead_band > 0.01).then_some(0.6),
                 no_load_rate: (dead_band > 0.02).then_some(5.2),
             }),
+            passive: alike.then_some(PassiveFile {
+                joint: JointName(Joint::Back),
+                spring: if fluid.is_some() { Spring::Stiffness(chi) } else { Spring::Relaxation(chi) },
+            }),
         }
     }
 }
@@ -377,5 +383,45 @@ proptest! {
         let at = (0..=at).rev().find(|&at| EXAMPLE.is_char_boundary(at)).unwrap();
         let text = if cut { EXAMPLE[..at].to_owned() } else { format!("{}{with}{}", &EXAMPLE[..at], &EXAMPLE[at + 1..]) };
         let _ = read(&text);
+    }
+}
+
+#[test]
+fn a_passive_joint_has_a_spring() {
+    let with = |table: &str| {
+        read(&format!(
+            "[links]\nmiddle = 1\nside = 1\n[drag]\nchi = 2\nc_t = {{ over_viscosity = 1 }}\n{table}"
+        ))
+    };
+    let file = with("[passive]\njoint = \"back\"\nrelaxation_s = 0.5\n").unwrap();
+    let passive = PassiveFile {
+        joint: JointName(Joint::Back),
+        spring: Spring::Relaxation(0.5),
+    };
+    assert_eq!(file.passive, Some(passive));
+    let fluid = "[fluid]\nkinematic_viscosity = 0.06\ndensity = 976\n";
+    let stiff = "[passive]\njoint = \"front\"\nstiffness_n_m = 0.25\n";
+    let stiff = with(&format!("{fluid}{stiff}")).unwrap();
+    for file in [file, stiff] {
+        let again = SwimmerFile::parse(&file.to_toml(), "robot.toml".as_ref()).unwrap();
+        assert_eq!(again, file);
+    }
+    for (table, problem) in [
+        (
+            "joint = \"middle\"\nrelaxation_s = 1",
+            "a joint is front or back",
+        ),
+        ("joint = \"back\"", "one of them"),
+        (
+            "joint = \"back\"\nrelaxation_s = 1\nstiffness_n_m = 1",
+            "one of them",
+        ),
+        ("joint = \"back\"\nrelaxation_s = 0", "positive"),
+        ("joint = \"back\"\nstiffness_n_m = 1", "needs the viscosity"),
+    ] {
+        let error = with(&format!("[passive]\n{table}\n"))
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains(problem), "{error}");
     }
 }

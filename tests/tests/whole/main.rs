@@ -2,6 +2,7 @@
 
 mod link_log;
 mod optimised_gait;
+mod passive;
 mod playlist;
 mod real_anchors;
 mod real_recordings;

@@ -322,6 +322,7 @@ pub(crate) fn known(truth: &Swimmer<f64>, servo: Option<ServoFile>) -> SwimmerFi
         },
         fluid: None,
         servo,
+        passive: None,
     }
 }
 

@@ -142,6 +142,7 @@ impl Laboratory {
                 },
                 fluid: None,
                 servo: Some(self.servo),
+                passive: None,
             },
             reflectors: Reflectors {
                 front: reflector("Front", reach),

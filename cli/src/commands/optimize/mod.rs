@@ -7,6 +7,7 @@ mod displacement;
 mod efficiency;
 mod front;
 mod pace;
+mod passive;
 mod robust;
 mod sideways;
 mod speed;
@@ -37,6 +38,7 @@ pub(crate) enum Optimize {
     Sideways(Search<sideways::Sideways>),
     Speed(Search<speed::Speed>),
     Steer(Search<steer::Steer>),
+    Passive(passive::Passive),
 }
 
 impl Optimize {
@@ -49,6 +51,7 @@ impl Optimize {
             Self::Sideways(search) => search.run(output),
             Self::Speed(search) => search.run(output),
             Self::Steer(search) => search.run(output),
+            Self::Passive(passive) => passive.run(output),
         }
     }
 }

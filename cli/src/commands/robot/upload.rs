@@ -208,6 +208,14 @@ impl Prepared {
         let made_for = match spec {
             GaitSpec::File { path, .. } => {
                 let file = GaitFile::load(path)?;
+                if let Some(passive) = &file.passive {
+                    aside(&format!(
+                        "note: the {} joint of {} is passive: unplug its servo; the robot sends pulses for both joints, and only those of \
+                         the other joint may move one",
+                        passive.joint,
+                        path.display()
+                    ));
+                }
                 file.swimmer_hash.map(|hash| MadeFor {
                     name: file
                         .swimmer_name

@@ -144,6 +144,13 @@ pub(super) const SESSIONS: &[Session] = &[
         done("playable", "optimize speed --swimmer robot --playable"),
         bad_input("refused", "optimize speed --swimmer robot"),
     ]),
+    bare("passive", &[
+        done("sine", "simulate --swimmer elastic-tail --gait sine:1 --period 1 -o sine.gait"),
+        done("file", "simulate --swimmer purcell --gait sine.gait"),
+        bad_input("no-joint", "simulate --swimmer purcell --gait sine:1"),
+        done("displacement", "optimize passive --swimmer elastic-tail --max-angle 1 --harmonics 2"),
+        bad_input("no-rate", "optimize passive --swimmer elastic-tail --max-angle 1 --most speed"),
+    ]),
     with("tests/cmd/robust.in", "robust", &[
         done("displacement", "optimize displacement --swimmer robot --max-angle 2.8 --robust fit.json"),
         done("efficiency", "optimize efficiency --swimmer robot --robust fit.json --over mean --order 3"),

@@ -37,6 +37,7 @@ impl Bench<'_> {
             swimmer,
             fluid: None,
             servo: None,
+            passive: None,
         };
         self.operator
             .ask(self.line, false, &question, |answer| match answer {
