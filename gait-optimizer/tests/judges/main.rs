@@ -7,6 +7,7 @@ mod displacement;
 mod efficiency;
 mod efficiency_any_swimmer;
 mod height_map;
+mod media;
 mod neighbours;
 mod paper_shooting;
 mod plane;

@@ -27,7 +27,7 @@ fn problem(swimmer: Swimmer<f64>, max_angle: f64, starts: usize) -> SpeedProblem
 
 /// The search, and the best that the direct method reaches from rough circles over several centres and sizes.
 #[track_caller]
-fn by_two_methods(swimmer: Swimmer<f64>, max_angle: f64) {
+pub(crate) fn by_two_methods(swimmer: Swimmer<f64>, max_angle: f64) {
     let problem = problem(swimmer, max_angle, 24);
     let polished = fastest(&problem).unwrap().speed_over_length;
     let circles = [
