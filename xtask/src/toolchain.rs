@@ -52,7 +52,7 @@ impl Target {
         match self {
             Self::Chip => "",
             Self::Page => {
-                "-Zunstable-options -Cpanic=immediate-abort -Ctarget-feature=+simd128 -Cllvm-args=-inline-threshold=40"
+                "-Zunstable-options -Cpanic=immediate-abort -Ctarget-feature=+simd128 -Cllvm-args=-inline-threshold=25"
             }
         }
     }
