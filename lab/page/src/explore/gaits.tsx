@@ -2,7 +2,7 @@
 
 import { activeGait, CIRCLE, edit, editGait, type Gait, OPTIMA, type Optimum, shown } from "./document.ts";
 import { FEWEST, withPoints } from "./handles.tsx";
-import { curveOf, forgetStopped, isCurrent, optima, searching, stopSearch } from "./model.ts";
+import { curveOf, forgetStopped, isCurrent, optima, searching, STOPPED, stopSearch } from "./model.ts";
 import { angle, figure, NAMES } from "./names.ts";
 import { symmetrised } from "./spline.ts";
 
@@ -95,7 +95,7 @@ function OptimumRow({ what }: { what: Optimum }) {
     forgetStopped(what);
     editGait({ kind: "optimum", what });
   };
-  const reason = wanted && searching.value?.what !== what && found && "reason" in found ? found.reason : "";
+  const reason = wanted && searching.value?.what !== what && found && "reason" in found && found.reason !== STOPPED ? found.reason : "";
   return (
     <>
       <tr class={wanted && !isCurrent(what) ? "stale" : ""}>
@@ -107,7 +107,7 @@ function OptimumRow({ what }: { what: Optimum }) {
           </label>
         </th>
         <td data-optimum={what}>
-          {!wanted ? "" : searching.value?.what === what ? <Searching seconds={searching.value.seconds} /> : !found ? "…" : "reason" in found ? "none" : brief(what, found.told)}
+          {!wanted ? "" : searching.value?.what === what ? <Searching seconds={searching.value.seconds} /> : !found ? "…" : "reason" in found ? (found.reason === STOPPED ? STOPPED : "none") : brief(what, found.told)}
         </td>
         <td>
           <button class="small" onClick={take} aria-label={`Take ${NAMES[what]}`}>Take</button>

@@ -198,7 +198,8 @@ const wanted = computed(() => {
 const optimumAsked = (what: Optimum) => JSON.stringify({ swimmer: swimmer.value?.toml, what, bounds: bounds(shown.value) });
 /** Present search and its duration in seconds. */
 export const searching = signal<{ what: Optimum; seconds: number } | null>(null);
-const STOPPED = "stopped";
+/** Reason of a search that was stopped. */
+export const STOPPED = "stopped";
 /** Stops the present search. */
 export const stopSearch = () => search.stop(STOPPED);
 /** Allows a stopped search to start again. */
