@@ -105,15 +105,6 @@ pub(crate) fn sphere_turning<T: Scalar>(radius: T) -> T {
 }
 
 impl<T: Scalar> Swimmer<T> {
-    /// Length of a link \[m\].
-    pub fn length_of(&self, link: Link) -> T {
-        match link {
-            Link::Middle => self.links.middle,
-            Link::Front => self.links.front,
-            Link::Back => self.links.back,
-        }
-    }
-
     /// χ of a link.
     pub fn chi_of(&self, link: Link) -> T {
         match (link, self.side_chi) {
@@ -126,7 +117,7 @@ impl<T: Scalar> Swimmer<T> {
     /// c_t/μ of a link.
     pub fn tangential_drag_of(&self, link: Link) -> T {
         self.tangential_drag
-            .over_viscosity(link, self.length_of(link))
+            .over_viscosity(link, self.links.of(link))
     }
 
     /// Radius \[m\] of the sphere on a link; 0 without one.
@@ -149,7 +140,7 @@ impl<T: Scalar> Swimmer<T> {
     /// assert_eq!((snake.tangential, snake.normal, snake.rotational), (0.0, 1.0, 0.0));
     /// ```
     pub fn tensor(&self, link: Link) -> LinkTensor<T> {
-        let length = self.length_of(link);
+        let length = self.links.of(link);
         match self.medium {
             Medium::Viscous => {
                 let radius = self.sphere_radius_on(link);

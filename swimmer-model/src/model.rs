@@ -38,7 +38,7 @@ impl<T: Scalar> Model<T> {
         swimmer.validate()?;
         let middle = swimmer.tensor(Link::Middle);
         let side = |link, mirror| {
-            let (tensor, length) = (swimmer.tensor(link), swimmer.length_of(link));
+            let (tensor, length) = (swimmer.tensor(link), swimmer.links.of(link));
             let is_rod = swimmer.is_viscous() && swimmer.sphere_radius_on(link) == T::zero();
             let new = if is_rod { SideLink::rod } else { SideLink::new };
             new(&tensor, length, swimmer.links.middle, mirror)
