@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use passive_joint::{
-    LimitCycle, Objective, Optimum, Problem, SpringChoice, optimize, over_viscosity,
+    LimitCycle, Objective, Optima, Optimum, Problem, SpringChoice, optimize, over_viscosity,
 };
 use serde::Serialize;
 use swimmer_files::{AnyGait, Bounds, GaitFile, JointName, Spring, SwimmerFile};
@@ -176,7 +176,7 @@ pub fn run(request: &Request, context: &mut Context) -> Result<Output, Error> {
         max_rate: request.max_rate.or(file.servo.map(|servo| servo.max_rate)),
         harmonics: request.harmonics,
     };
-    let [best, sine] = optimize(&problem)?;
+    let Optima { best, sine } = optimize(&problem)?;
     let drive = best.waveform.driving(best.passive.driven());
     let cycle = LimitCycle::new(&model, &drive, best.passive)?;
     let samples = GaitFile {
@@ -225,16 +225,14 @@ fn described(file: &SwimmerFile, model: &swimmer_model::Model<f64>, optimum: &Op
     let length = file.swimmer.total_length();
     let (values, period) = (&optimum.values, optimum.period);
     let viscosity = file.fluid.map(|fluid| fluid.viscosity());
-    let coefficients = optimum.waveform.coefficients();
-    let harmonic = |index: usize| WaveformHarmonic {
-        order: 2 * index + 1,
-        cos_rad: coefficients[(2 * index).saturating_sub(1)],
-        sin_rad: if index == 0 {
-            0.0
-        } else {
-            coefficients[2 * index]
-        },
-    };
+    let harmonics = optimum
+        .waveform
+        .harmonics()
+        .map(|harmonic| WaveformHarmonic {
+            order: harmonic.order,
+            cos_rad: harmonic.cos,
+            sin_rad: harmonic.sin,
+        });
     Cycle {
         displacement_over_length: values.displacement / length,
         displacement_m: values.displacement,
@@ -245,8 +243,8 @@ fn described(file: &SwimmerFile, model: &swimmer_model::Model<f64>, optimum: &Op
         relaxation_s: optimum.passive.relaxation_share(model) * period,
         stiffness_n_m: viscosity.map(|viscosity| optimum.passive.kappa * viscosity / period),
         passive_start_rad: values.start,
-        largest_angle_rad: optimum.largest[0],
-        largest_rate_rad_per_s: optimum.largest[1],
-        waveform: (0..coefficients.len().div_ceil(2)).map(harmonic).collect(),
+        largest_angle_rad: optimum.largest_angle,
+        largest_rate_rad_per_s: optimum.largest_rate,
+        waveform: harmonics.collect(),
     }
 }

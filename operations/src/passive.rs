@@ -4,11 +4,10 @@ use std::fmt;
 use std::str::FromStr;
 
 use passive_joint::{LimitCycle, PassiveError, PassiveJoint, Waveform, over_viscosity};
-use swimmer_files::{
-    AnyGait, GaitFile, GaitSpec, JointName, PassiveFile, Spring, SwimmerFile, parse_angle,
-};
+use swimmer_files::{GaitFile, GaitSpec, JointName, PassiveFile, Spring, SwimmerFile, parse_angle};
 use swimmer_model::{Gait, Model};
 
+use crate::source::curve;
 use crate::{Context, Error, GaitSource, Subject, SwimmerSource, model};
 
 /// Largest amplitude of `sine:AMPLITUDE` \[rad\].
@@ -217,10 +216,6 @@ fn respond(
         relaxation_share: passive.relaxation_share(model),
     };
     Ok((cycle.gait_file(SAMPLES), response))
-}
-
-fn curve(file: &GaitFile) -> Result<AnyGait, Error> {
-    AnyGait::from_file(file).map_err(|why| Error::bad_input(&why))
 }
 
 impl From<PassiveError> for Error {

@@ -176,7 +176,7 @@ enum Resolved {
     Samples(Box<GaitFile>),
 }
 
-fn curve(file: &GaitFile) -> Result<AnyGait, Error> {
+pub(crate) fn curve(file: &GaitFile) -> Result<AnyGait, Error> {
     AnyGait::from_file(file).map_err(|why| Error::refused(format!("reading the gait: {why}")))
 }
 

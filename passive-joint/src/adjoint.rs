@@ -33,8 +33,9 @@ pub struct CycleValues {
 /// Values at a stage that the adjoint equations need.
 struct Stage {
     u: f64,
-    /// φ_p, and the derivative of its rate.
+    /// φ_p \[rad\].
     angle: f64,
+    /// Derivative of φ_p′ with respect to φ_p.
     slope: f64,
     rate: Vector2<f64>,
     first: FirstDerivatives<f64>,

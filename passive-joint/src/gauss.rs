@@ -1,32 +1,34 @@
 //! Gauss–Legendre collocation of order six for the passive angle: A-stable, so a stiff spring needs no small steps.
 
-use link_protocol::Joint;
 use nalgebra::{Matrix3, Vector3};
-use swimmer_model::Model;
+use swimmer_model::{GaussLegendre, Model};
 
 use crate::PassiveJoint;
+use crate::spring::straight_resistance;
 
 /// Stages of the method.
 pub(crate) const STAGES: usize = 3;
-/// √15.
-const ROOT: f64 = 3.872_983_346_207_417;
 
 /// Nodes of the stages, as shares of a step.
-pub(crate) const NODES: [f64; STAGES] = [0.5 - ROOT / 10.0, 0.5, 0.5 + ROOT / 10.0];
-/// Weights of the stages.
+pub(crate) const NODES: [f64; STAGES] = {
+    let [first, middle, last] = GaussLegendre::<STAGES>::NODES;
+    [0.5 + 0.5 * first, 0.5 + 0.5 * middle, 0.5 + 0.5 * last]
+};
+/// Weights of the stages: rational, as the coefficients.
 pub(crate) const WEIGHTS: [f64; STAGES] = [5.0 / 18.0, 4.0 / 9.0, 5.0 / 18.0];
 
 /// Coefficients of the stages (Butcher matrix).
 pub(crate) fn coefficients() -> Matrix3<f64> {
+    let root = 15.0_f64.sqrt();
     Matrix3::new(
         5.0 / 36.0,
-        2.0 / 9.0 - ROOT / 15.0,
-        5.0 / 36.0 - ROOT / 30.0,
-        5.0 / 36.0 + ROOT / 24.0,
+        2.0 / 9.0 - root / 15.0,
+        5.0 / 36.0 - root / 30.0,
+        5.0 / 36.0 + root / 24.0,
         2.0 / 9.0,
-        5.0 / 36.0 - ROOT / 24.0,
-        5.0 / 36.0 + ROOT / 30.0,
-        2.0 / 9.0 + ROOT / 15.0,
+        5.0 / 36.0 - root / 24.0,
+        5.0 / 36.0 + root / 30.0,
+        2.0 / 9.0 + root / 15.0,
         5.0 / 36.0,
     )
 }
@@ -60,7 +62,7 @@ fn passive_rate(
     let (p, d) = (passive.joint.index(), passive.driven().index());
     let along = &first.d_power[p];
     let resistance = first.power[(p, p)];
-    let rate = -(passive.kappa * angle + first.power[(p, d)] * driven_rate) / resistance;
+    let rate = passive.rate(&first.power, driven_rate, angle);
     let slope = -(passive.kappa + along[(p, d)] * driven_rate + rate * along[(p, p)]) / resistance;
     [rate, slope]
 }
@@ -91,7 +93,7 @@ impl Step {
         };
         let mut rates = evaluate(&Vector3::repeat(start)).0;
         // The rate at the start says little about a stiff joint, so the first Newton step starts from rest.
-        if passive.kappa * length > straight(model, passive.joint) {
+        if passive.kappa * length > straight_resistance(model, passive.joint) {
             rates = Vector3::zeros();
         }
         for _ in 0..NEWTON_STEPS {
@@ -117,8 +119,4 @@ impl Step {
         }
         None
     }
-}
-
-fn straight(model: &Model<f64>, joint: Joint) -> f64 {
-    crate::spring::straight_resistance(model, joint)
 }

@@ -57,7 +57,7 @@ impl Maximisation<'_> {
     /// [`PassiveError::NoOptimum`] after a bounded number of steps.
     pub(crate) fn solve(&self, start: DVector<f64>) -> Result<Maximum, PassiveError> {
         let mut x = start;
-        // Of the size of the gradient in all. A large barrier would push the search off the branch on which it begins.
+        // Multipliers sum to 1, the size of the gradient.
         let mut multipliers =
             DVector::from_element(self.limits.len(), 1.0 / self.limits.len() as f64);
         let mut barrier = FIRST_BARRIER;

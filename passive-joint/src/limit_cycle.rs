@@ -152,9 +152,7 @@ impl<G: Gait<f64>> Gait<f64> for LimitCycle<'_, G> {
         let (phi, rate) = (drive.phi[driven], drive.rate[driven]);
         let shape = self.passive.shape(phi, angle);
         let power = self.model.power_matrix(&shape);
-        let p = self.passive.joint.index();
-        let passive_rate =
-            -(self.passive.kappa * angle + power[(p, driven)] * rate) / power[(p, p)];
+        let passive_rate = self.passive.rate(&power, rate, angle);
         let rates: Vector2<f64> = self.passive.shape(rate, passive_rate);
         GaitPoint {
             phi: shape,

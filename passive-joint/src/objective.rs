@@ -14,9 +14,11 @@ pub enum Objective {
 
 /// Exponents of displacement, energy and period in an objective.
 pub(crate) struct Exponents {
+    /// Exponent of the displacement.
     pub(crate) displacement: f64,
-    /// Of ∮ Φ′ᵀWΦ′ du.
+    /// Exponent of ∮ Φ′ᵀWΦ′ du.
     pub(crate) energy: f64,
+    /// Exponent of the period.
     pub(crate) period: f64,
 }
 

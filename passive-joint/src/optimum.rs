@@ -34,15 +34,26 @@ pub struct Optimum {
     pub value: f64,
     /// Optimality conditions.
     pub conditions: Conditions,
-    /// Largest angle \[rad\] and rate \[rad/s\] of the driven joint.
-    pub largest: [f64; 2],
+    /// Largest angle of the driven joint \[rad\].
+    pub largest_angle: f64,
+    /// Largest rate of the driven joint \[rad/s\].
+    pub largest_rate: f64,
+}
+
+/// Results of a search under the same bounds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Optima {
+    /// The best waveform.
+    pub best: Optimum,
+    /// The best sinusoid.
+    pub sine: Optimum,
 }
 
 /// Finds the best waveform, and the best sinusoid under the same bounds.
 ///
 /// # Errors
 /// A problem without an optimum or with invalid numbers, or a search that does not converge.
-pub fn optimize(problem: &Problem<'_>) -> Result<[Optimum; 2], PassiveError> {
+pub fn optimize(problem: &Problem<'_>) -> Result<Optima, PassiveError> {
     let sine_problem = Problem {
         harmonics: 1,
         ..*problem
@@ -51,10 +62,11 @@ pub fn optimize(problem: &Problem<'_>) -> Result<[Optimum; 2], PassiveError> {
     let sine_scaled = Scaled::new(&sine_problem)?;
     let (sine, at) = search(&sine_scaled, sine_scaled.sine())?;
     if problem.harmonics == 1 {
-        return Ok([sine.clone(), sine]);
+        let best = sine.clone();
+        return Ok(Optima { best, sine });
     }
     let (best, _) = search(&scaled, scaled.extended(&at))?;
-    Ok([best, sine])
+    Ok(Optima { best, sine })
 }
 
 fn search(
@@ -76,8 +88,10 @@ fn search(
     } = maximisation.solve(start)?;
     let (waveform, passive, period) = (scaled.waveform(&x), scaled.passive(&x)?, scaled.period(&x));
     let values = scaled.values(&x)?;
+    let [largest_angle, largest_rate] = largest(&waveform, period);
     let optimum = Optimum {
-        largest: largest(&waveform, period),
+        largest_angle,
+        largest_rate,
         waveform,
         passive,
         period,

@@ -1,7 +1,7 @@
 //! Torsion spring of a passive joint, and its dimensionless form over one cycle.
 
 use link_protocol::Joint;
-use nalgebra::Vector2;
+use nalgebra::{Matrix2, Vector2};
 use swimmer_files::{Fluid, Spring};
 use swimmer_model::Model;
 
@@ -84,6 +84,12 @@ impl PassiveJoint {
         let way = to - from;
         let drive = NODES.map(|node| [from + way * node, way]);
         Step::new(model, self, &drive, angle, 1.0).map(|step| step.end)
+    }
+
+    /// φ_p′ from W, φ_d′ and φ_p: the spring balances the drag of the joint.
+    pub(crate) fn rate(&self, power: &Matrix2<f64>, driven_rate: f64, angle: f64) -> f64 {
+        let (p, d) = (self.joint.index(), self.driven().index());
+        -(self.kappa * angle + power[(p, d)] * driven_rate) / power[(p, p)]
     }
 
     /// The driven joint.

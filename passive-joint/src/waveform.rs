@@ -21,6 +21,17 @@ fn is_sine(index: usize) -> bool {
     index > 0 && index.is_multiple_of(2)
 }
 
+/// One harmonic of a waveform.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OddHarmonic {
+    /// Order.
+    pub order: usize,
+    /// Coefficient of the cosine \[rad\].
+    pub cos: f64,
+    /// Coefficient of the sine \[rad\].
+    pub sin: f64,
+}
+
 impl Waveform {
     /// `amplitude` cos 2πu \[rad\].
     pub fn sine(amplitude: f64) -> Self {
@@ -37,6 +48,17 @@ impl Waveform {
     /// Coefficients c₁, c₃, s₃, c₅, s₅, … \[rad\].
     pub fn coefficients(&self) -> &[f64] {
         &self.coefficients
+    }
+
+    /// Harmonics in increasing order.
+    pub fn harmonics(&self) -> impl Iterator<Item = OddHarmonic> {
+        let coefficient = |index: usize| self.coefficients.get(index).copied().unwrap_or(0.0);
+        let count = self.coefficients.len() / 2 + 1;
+        (0..count).map(move |n| OddHarmonic {
+            order: 2 * n + 1,
+            cos: coefficient((2 * n).saturating_sub(1)),
+            sin: if n == 0 { 0.0 } else { coefficient(2 * n) },
+        })
     }
 
     /// Number of coefficients of a waveform with this number of odd harmonics.

@@ -3,7 +3,7 @@
 mod transcription;
 
 use link_protocol::Joint;
-use passive_joint::{Objective, PassiveError, Problem, SpringChoice, optimize};
+use passive_joint::{Objective, Optima, PassiveError, Problem, SpringChoice, optimize};
 use swimmer_model::{Model, Swimmer};
 use transcription::Transcription;
 
@@ -33,12 +33,12 @@ fn optima_fulfil_their_conditions_and_beat_the_sinusoid() {
             max_rate,
             ..problem(&purcell)
         };
-        let [best, sine] = optimize(&problem).unwrap();
+        let Optima { best, sine } = optimize(&problem).unwrap();
         for found in [&best, &sine] {
             assert!(found.conditions.stationarity < 1e-8);
             assert!(found.conditions.complementarity < 1e-8);
             assert!(found.conditions.is_strict);
-            assert!(found.largest[0] < 1.0 + 1e-4, "{:?}", found.largest);
+            assert!(found.largest_angle < 1.0 + 1e-4, "{}", found.largest_angle);
         }
         let share = (best.value - sine.value).exp() - 1.0;
         assert!(
@@ -52,7 +52,7 @@ fn optima_fulfil_their_conditions_and_beat_the_sinusoid() {
 #[test]
 fn the_best_sinusoid_is_that_of_the_best_frequency() {
     let purcell = Model::new(&Swimmer::purcell()).unwrap();
-    let [_, sine] = optimize(&problem(&purcell)).unwrap();
+    let Optima { sine, .. } = optimize(&problem(&purcell)).unwrap();
     assert!((std::f64::consts::TAU / sine.passive.kappa - 4.6333).abs() < 1e-4);
     assert!((sine.values.displacement / 3.0 - 0.018_275_69).abs() < 1e-8);
 }
@@ -74,7 +74,7 @@ fn a_direct_transcription_finds_the_same_optima() {
             harmonics: 2,
             ..problem(model)
         };
-        let [best, sine] = optimize(&problem).unwrap();
+        let Optima { best, sine } = optimize(&problem).unwrap();
         let (value, coefficients) = Transcription::new(&problem).maximise(&sine);
         assert!(
             (value - best.value).abs() < 1e-6,
