@@ -238,7 +238,8 @@ pub fn forecast<G: Gait<f64> + ?Sized>(
 }
 
 impl Played {
-    fn period_us(&self) -> u32 {
+    /// Duration of a cycle \[µs\].
+    pub fn period_us(&self) -> u32 {
         (self.period * 1e6).round() as u32
     }
 

@@ -31,7 +31,7 @@ pub(crate) enum Experiment {
 
 /// Spec, and the folder of its experiment.
 #[derive(Debug, clap::Args)]
-struct Place {
+struct ExperimentPaths {
     /// The spec of the experiment
     #[arg(value_name = "SPEC.toml")]
     spec: PathBuf,
@@ -40,7 +40,7 @@ struct Place {
     output: Option<PathBuf>,
 }
 
-impl Place {
+impl ExperimentPaths {
     fn folder(&self) -> PathBuf {
         self.output
             .clone()

@@ -229,14 +229,7 @@ fn mistakes_are_refused_before_anything_moves() {
     .unwrap();
     refused(&RUN, "has changed since");
     std::fs::write(folder.join("spec.toml"), SPEC).unwrap();
-    let live = [
-        "experiment",
-        "run",
-        "spec.toml",
-        "--port",
-        "twin",
-        "--track",
-        "-",
-    ];
+    let [words @ .., _] = RUN;
+    let live: Vec<&str> = words.into_iter().chain(["-"]).collect();
     refused(&live, "--track twin");
 }

@@ -144,8 +144,9 @@ pub fn compare(plan: &Plan, journal: &Journal) -> Comparison {
         let optimum = gait.neighbour_of.as_ref()?;
         let optimum = plan.gaits.iter().find(|other| other.name == *optimum)?;
         Some(better(
-            (optimum, &of(&optimum.name)),
-            (gait, &of(&gait.name)),
+            optimum,
+            gait,
+            &differences(optimum, &of(&optimum.name), gait, &of(&gait.name)),
         ))
     });
     let mut comparisons: Vec<Better> = neighbours.collect();
@@ -191,23 +192,27 @@ fn half_width(values: &[f64], level: f64) -> Option<f64> {
     Some(standard_error(values)? * student::quantile(freedom, level)?)
 }
 
-fn better(
-    (optimum, of_optimum): (&PlannedGait, &[TrialValue]),
-    (neighbour, of_neighbour): (&PlannedGait, &[TrialValue]),
-) -> Better {
-    let measure = optimum.measure;
-    let value = |gait: &PlannedGait, value: &TrialValue| match measure {
+/// Optimum minus neighbour in the blocks that have both, in the optimum's measure.
+fn differences(
+    optimum: &PlannedGait,
+    of_optimum: &[TrialValue],
+    neighbour: &PlannedGait,
+    of_neighbour: &[TrialValue],
+) -> Vec<f64> {
+    let value = |gait: &PlannedGait, value: &TrialValue| match optimum.measure {
         Measure::Displacement => value.displacement_m,
         Measure::Speed => value.displacement_m / gait.period_s,
     };
-    let differences: Vec<f64> = of_optimum
-        .iter()
-        .filter_map(|one| {
-            let other = of_neighbour.iter().find(|other| other.block == one.block)?;
-            Some(value(optimum, one) - value(neighbour, other))
-        })
-        .collect();
-    let difference = mean(&differences);
+    let in_block = |one: &TrialValue| {
+        let other = of_neighbour.iter().find(|other| other.block == one.block)?;
+        Some(value(optimum, one) - value(neighbour, other))
+    };
+    of_optimum.iter().filter_map(in_block).collect()
+}
+
+fn better(optimum: &PlannedGait, neighbour: &PlannedGait, differences: &[f64]) -> Better {
+    let measure = optimum.measure;
+    let difference = mean(differences);
     let is_speed = measure == Measure::Speed;
     Better {
         better: optimum.name.clone(),
@@ -216,7 +221,7 @@ fn better(
         difference_m: difference.filter(|_| !is_speed),
         difference_m_per_s: difference.filter(|_| is_speed),
         blocks: differences.len(),
-        p_alone: one_sided(&differences),
+        p_alone: one_sided(differences),
         p: None,
         shown: false,
     }

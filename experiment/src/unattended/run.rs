@@ -100,14 +100,21 @@ pub struct Run {
     gaits: BTreeMap<String, GaitOnRobot>,
     start: StartPose,
     stop: StopRules,
-    /// Remaining trials with the attempts and failures so far.
-    left: VecDeque<(Trial, u32, u32)>,
+    left: VecDeque<RemainingTrial>,
     failures_in_a_row: u32,
     phase: Phase,
     requests: VecDeque<Request>,
     last_seen_s: Option<f64>,
     ending: Option<RunEnding>,
     finished: usize,
+}
+
+/// Trial that is neither finished nor given up.
+#[derive(Debug)]
+struct RemainingTrial {
+    trial: Trial,
+    attempts: u32,
+    failures: u32,
 }
 
 #[derive(Debug)]
@@ -169,10 +176,14 @@ impl Run {
         stop: StopRules,
     ) -> Self {
         let attempts = journal.attempts();
-        let left = journal.remaining(plan).into_iter().map(|trial| {
-            let before = attempts.get(&trial.number).copied().unwrap_or(0);
-            (trial.clone(), before, journal.failures(trial.number))
-        });
+        let left = journal
+            .remaining(plan)
+            .into_iter()
+            .map(|trial| RemainingTrial {
+                trial: trial.clone(),
+                attempts: attempts.get(&trial.number).copied().unwrap_or(0),
+                failures: journal.failures(trial.number),
+            });
         Self {
             left: left.collect(),
             plan: plan.clone(),
@@ -214,7 +225,7 @@ impl Run {
 
     /// Trial under way, or the next one.
     pub fn trial(&self) -> Option<&Trial> {
-        self.left.front().map(|(trial, ..)| trial)
+        self.left.front().map(|left| &left.trial)
     }
 
     /// Trials that this run has finished.
@@ -259,7 +270,7 @@ impl Run {
         match &mut self.phase {
             Phase::Going(controller) => controller.play_began(time_s),
             Phase::Waiting => {
-                let Some((trial, ..)) = self.left.front() else {
+                let Some(RemainingTrial { trial, .. }) = self.left.front() else {
                     return;
                 };
                 let (Some(gait), Some(planned)) =
@@ -391,7 +402,10 @@ impl Run {
     }
 
     fn next_trial(&mut self, now_s: f64) {
-        let Some((trial, attempts, _)) = self.left.front_mut() else {
+        let Some(RemainingTrial {
+            trial, attempts, ..
+        }) = self.left.front_mut()
+        else {
             self.end(RunEnding::Complete);
             return;
         };
@@ -425,14 +439,17 @@ impl Run {
     }
 
     fn play(&mut self) {
-        let Some((trial, attempt, _)) = self.left.front() else {
+        let Some(RemainingTrial {
+            trial, attempts, ..
+        }) = self.left.front()
+        else {
             return;
         };
         let Some(gait) = self.plan.gait(trial) else {
             return;
         };
         self.requests
-            .push_back(Request::BeginTrack(track_name(trial, *attempt)));
+            .push_back(Request::BeginTrack(track_name(trial, *attempts)));
         self.requests.push_back(Request::Play {
             gait: gait.name.clone(),
             cycles: self.plan.run_in + gait.cycles,
@@ -465,7 +482,10 @@ impl Run {
             self.failed("a start or an end of a counted cycle was not seen");
             return;
         };
-        let Some((trial, attempt, _)) = self.left.pop_front() else {
+        let Some(RemainingTrial {
+            trial, attempts, ..
+        }) = self.left.pop_front()
+        else {
             return;
         };
         let departure = playing
@@ -477,8 +497,8 @@ impl Run {
         self.requests.push_back(Request::EndTrack);
         self.requests.push_back(Request::Write(Entry::Finished {
             trial: trial.number,
-            attempt,
-            track: track_name(&trial, attempt),
+            attempt: attempts,
+            track: track_name(&trial, attempts),
             began_s: playing.began_s,
             cycles,
             departure,
@@ -493,12 +513,17 @@ impl Run {
         self.requests.push_back(Request::EndTrack);
         self.failures_in_a_row += 1;
         self.phase = Phase::Between;
-        if let Some((trial, attempt, failures)) = self.left.front_mut() {
+        if let Some(RemainingTrial {
+            trial,
+            attempts,
+            failures,
+        }) = self.left.front_mut()
+        {
             *failures += 1;
             let number = trial.number;
             self.requests.push_back(Request::Write(Entry::Failed {
                 trial: number,
-                attempt: *attempt,
+                attempt: *attempts,
                 reason: reason.to_owned(),
             }));
             if self.stop.gives_up_after(*failures) {

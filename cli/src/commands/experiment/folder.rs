@@ -8,7 +8,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use experiment::unattended::{Entry, Journal, JournalError, Plan, PlannedGait, Spec};
 use swimmer_files::{AnyGait, GaitFile, SwimmerFile, write_atomically};
 
-use super::Place;
+use super::ExperimentPaths;
 use crate::failure::{Failure, Outcome};
 
 pub(super) const SPEC: &str = "spec.toml";
@@ -41,12 +41,12 @@ impl Folder {
     ///
     /// # Errors
     /// [`Failure::BadInput`] if it is not planned, or the spec has changed since.
-    pub(super) fn of(place: &Place) -> Outcome<Self> {
-        let path = place.folder();
-        let shown = place.spec.display();
-        let text = read(&place.spec)?;
+    pub(super) fn of(paths: &ExperimentPaths) -> Outcome<Self> {
+        let path = paths.folder();
+        let shown = paths.spec.display();
+        let text = read(&paths.spec)?;
         let folder = Self::load(&path)?;
-        let now = Spec::parse(&text, &place.spec)?;
+        let now = Spec::parse(&text, &paths.spec)?;
         if now != folder.spec {
             return Err(Failure::BadInput(format!(
                 "{shown} has changed since {} was planned: plan it into a new folder (-o DIR), or restore it from {}",

@@ -22,7 +22,7 @@ use crate::output::aside;
 
 /// Samples of a gait file that is made here.
 const SAMPLES: usize = 2048;
-/// Period at which the shortest period is asked of the robot's check \[s\].
+/// Period at which a forecast gives the shortest period \[s\].
 const SLOW_S: f64 = 60.0;
 
 /// Maker of the gaits of an experiment.
@@ -55,7 +55,6 @@ impl<'a> Maker<'a> {
             spec,
             home,
             draft,
-
             model: model(swimmer)?,
             servos: Servos::on_the_robot(swimmer.servo.unwrap_or_default()),
         })
@@ -105,9 +104,8 @@ impl<'a> Maker<'a> {
         match &gait.source {
             GaitSource::Gait(spec) => {
                 let spec = spec.clone().from_folder(self.home);
-                if let swimmer_files::GaitSpec::File { path, reversed } = &spec {
-                    let file = GaitFile::load(path)?;
-                    return Ok(if *reversed { file.reversed() } else { file });
+                if matches!(spec, swimmer_files::GaitSpec::File { .. }) {
+                    return Ok(operations::GaitSource::from(spec).file(operations::Files::Disk)?);
                 }
                 Ok(GaitFile::sampled(&load_gait(&spec)?, SAMPLES))
             }
@@ -205,12 +203,7 @@ impl<'a> Maker<'a> {
         let cycles = self.spec.run_in + spec.cycles;
         self.has_room(&curve, cycles)?;
         let table = table_of(&curve).map_err(|error| error.to_string())?;
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a playable period"
-        )]
-        let period_us = (period_s * 1e6).round() as u32;
+        let period_us = played(period_s).period_us();
         let net = Course::of_cycle(&self.model, &table, period_us, &self.servos).net();
         let path = format!("gaits/{}.gait", gait.name);
         gait.file

@@ -7,7 +7,7 @@ use experiment::unattended::{Plan, Spec};
 use serde::Serialize;
 use swimmer_files::SwimmerFile;
 
-use super::Place;
+use super::ExperimentPaths;
 use super::folder::{PLAN, SPEC, SWIMMER, read, write_plan};
 use super::gaits::{Maker, drive};
 use crate::failure::{Failure, Outcome};
@@ -22,7 +22,7 @@ use crate::quantity;
 #[derive(Debug, clap::Args)]
 pub(crate) struct PlanSpec {
     #[command(flatten)]
-    place: Place,
+    paths: ExperimentPaths,
 }
 
 #[derive(Debug, Serialize)]
@@ -37,11 +37,11 @@ struct PlanOutput<'a> {
 
 impl PlanSpec {
     pub(super) fn run(self, output: Output) -> Outcome {
-        let text = read(&self.place.spec)?;
-        let spec = Spec::parse(&text, &self.place.spec)?;
-        let home = self.place.spec.parent().unwrap_or_else(|| Path::new(""));
+        let text = read(&self.paths.spec)?;
+        let spec = Spec::parse(&text, &self.paths.spec)?;
+        let home = self.paths.spec.parent().unwrap_or_else(|| Path::new(""));
         let swimmer = SwimmerFile::find_from(&spec.swimmer, home)?;
-        let folder = NewFolder::start(&self.place.folder())?;
+        let folder = NewFolder::start(&self.paths.folder())?;
         let draft = folder.draft().to_path_buf();
         for inner in ["gaits", "tracks", "logs"] {
             std::fs::create_dir_all(draft.join(inner)).map_err(|error| {

@@ -6,7 +6,7 @@ use experiment::unattended::{Comparison, Measure, compare};
 use serde::Serialize;
 use swimmer_files::write_atomically;
 
-use super::Place;
+use super::ExperimentPaths;
 use super::folder::{Folder, PAGE, REPORT};
 use crate::failure::Outcome;
 use crate::output::{Output, document};
@@ -20,7 +20,7 @@ use crate::report::experiment::page;
 #[derive(Debug, clap::Args)]
 pub(crate) struct ReportPlan {
     #[command(flatten)]
-    place: Place,
+    paths: ExperimentPaths,
 }
 
 #[derive(Debug, Serialize)]
@@ -32,7 +32,7 @@ struct ReportOutput<'a> {
 
 impl ReportPlan {
     pub(super) fn run(self, output: Output) -> Outcome {
-        let folder = Folder::of(&self.place)?;
+        let folder = Folder::of(&self.paths)?;
         let journal = folder.journal()?;
         let comparison = compare(&folder.plan, &journal);
         let html = page(&folder.plan, &folder.swimmer.name, &comparison)?;

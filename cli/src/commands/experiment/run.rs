@@ -6,12 +6,13 @@ use std::path::PathBuf;
 
 use experiment::Course;
 use experiment::unattended::{Entry, Event, GaitOnRobot, Journal, Plan, Request, Run, RunEnding};
-use forecast::{Planner, Servos};
+use forecast::{Planner, Played, Servos};
 use gait_player::GaitTable;
+use link_protocol::MAX_KNOTS;
 use pose_source::SourceName;
 use serde::Serialize;
 
-use super::Place;
+use super::ExperimentPaths;
 use super::folder::{DRIVE, Folder, JournalFile};
 use crate::commands::plan::family_in;
 use crate::commands::robot::{Access, Bench, table_of};
@@ -29,7 +30,7 @@ use crate::progress::Progress;
 #[derive(Debug, clap::Args)]
 pub(crate) struct RunPlan {
     #[command(flatten)]
-    place: Place,
+    paths: ExperimentPaths,
     #[command(flatten)]
     access: Access,
     /// Where the cameras' frames come from: natnet[:HOST[,LOCAL]], tcp:HOST:PORT, -, or twin with a virtual robot
@@ -56,7 +57,7 @@ struct Playable {
 
 impl RunPlan {
     pub(super) fn run(self, output: Output) -> Outcome {
-        let folder = Folder::of(&self.place)?;
+        let folder = Folder::of(&self.paths)?;
         let interrupt = Interrupt::install_with_a_robot()?;
         let (mut file, journal) = JournalFile::open(&folder)?;
         let left = journal.remaining(&folder.plan).len();
@@ -91,7 +92,7 @@ impl RunPlan {
         );
         let began = bench.now_s();
         let progress = Progress::of_steps(left as u64);
-        let mut desk = Desk {
+        let mut executor = Executor {
             folder: &folder,
             file: &mut file,
             bench: &mut bench,
@@ -99,11 +100,11 @@ impl RunPlan {
             playable: &playable,
         };
         let ending = loop {
-            for event in desk.bench.advance()? {
+            for event in executor.bench.advance()? {
                 run.event(event);
             }
-            while let Some(request) = run.poll(desk.bench.now_s()) {
-                if let Some(event) = desk.execute(request)? {
+            while let Some(request) = run.poll(executor.bench.now_s()) {
+                if let Some(event) = executor.execute(request)? {
                     run.event(event);
                 }
             }
@@ -134,7 +135,7 @@ impl RunPlan {
 }
 
 /// Executor of requests.
-struct Desk<'a> {
+struct Executor<'a> {
     folder: &'a Folder,
     file: &'a mut JournalFile,
     bench: &'a mut Bench,
@@ -142,7 +143,7 @@ struct Desk<'a> {
     playable: &'a BTreeMap<String, Playable>,
 }
 
-impl Desk<'_> {
+impl Executor<'_> {
     fn execute(&mut self, request: Request) -> Outcome<Option<Event>> {
         match request {
             Request::Write(entry) => self.file.append(&entry)?,
@@ -204,12 +205,12 @@ fn gaits(
     for gait in gaits {
         let curve = folder.curve(gait)?;
         let table = table_of(&curve).map_err(|error| Failure::tried(&error))?;
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a playable period"
-        )]
-        let period_us = (gait.period_s * 1e6).round() as u32;
+        let played = Played {
+            servos: *servos,
+            period: gait.period_s,
+            knots: MAX_KNOTS,
+        };
+        let period_us = played.period_us();
         let on_robot = GaitOnRobot {
             course: Course::of_cycle(&model, &table, period_us, servos),
             period_s: gait.period_s,

@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-use super::Place;
+use super::ExperimentPaths;
 use super::folder::Folder;
 use crate::failure::Outcome;
 use crate::output::Output;
@@ -13,7 +13,7 @@ use crate::output::Output;
 #[derive(Debug, clap::Args)]
 pub(crate) struct Status {
     #[command(flatten)]
-    place: Place,
+    paths: ExperimentPaths,
 }
 
 #[derive(Debug, Serialize)]
@@ -37,7 +37,7 @@ struct Next {
 
 impl Status {
     pub(super) fn run(self, output: Output) -> Outcome {
-        let folder = Folder::of(&self.place)?;
+        let folder = Folder::of(&self.paths)?;
         let journal = folder.journal()?;
         let failures = folder.plan.trials.iter();
         output.answer(&StatusOutput {
