@@ -14,6 +14,10 @@ const LINKS: f64 = 3e-4;
 const GAIN: f64 = 0.005;
 const OFFSET: f64 = 0.3 * std::f64::consts::PI / 180.0;
 const SCALE: f64 = 0.002;
+/// Stretch of the image (tilted cameras, pixels that are not square) and lens distortion at the runs' mean distance from the image
+/// centre, where the campaign says nothing.
+const STRETCH: f64 = 0.001;
+const DISTORTION: f64 = 0.003;
 
 /// Prior of one parameter.
 #[derive(Debug, Clone, Copy)]
@@ -106,9 +110,21 @@ pub(super) fn priors(found: &CampaignFit, model: &RunModel) -> Vec<Known> {
         of(Parameter::FrontLength, known.links, links),
         of(Parameter::BackLength, known.links, links),
         of(Parameter::FloatTurning, known.float_turning, None),
-        of(Parameter::StretchSquare, known.camera_stretch, None),
-        of(Parameter::StretchDiagonal, known.camera_stretch, None),
-        of(Parameter::Distortion, known.lens_distortion, None),
+        of(
+            Parameter::StretchSquare,
+            known.camera_stretch,
+            Some(usual(1.0, STRETCH)),
+        ),
+        of(
+            Parameter::StretchDiagonal,
+            known.camera_stretch,
+            Some(usual(1.0, STRETCH)),
+        ),
+        of(
+            Parameter::Distortion,
+            known.lens_distortion,
+            Some(usual(1.0, DISTORTION)),
+        ),
     ]
     .into_iter()
     .flatten()

@@ -21,7 +21,7 @@ use crate::quantities::{NAMES, QUANTITIES};
 /// Errors without a prior, with their plausible sizes (rad, ln, s), tried in addition to the priors. One is included if it makes
 /// the runs twenty times likelier (ln of odds), as such errors are rare, and if it is at least [`TELLING_DEVIATIONS`] standard
 /// deviations from zero. Above higher odds it counts as certain.
-const UNFORESEEN: [(Parameter, f64); 8] = [
+const UNFORESEEN: [(Parameter, f64); 5] = [
     (Parameter::DeadBand, 5.0 * std::f64::consts::PI / 180.0),
     (Parameter::TangentialDrag, 0.3),
     (Parameter::FrontLag, 0.1),
@@ -30,9 +30,6 @@ const UNFORESEEN: [(Parameter, f64); 8] = [
         3.0 * std::f64::consts::PI / 180.0,
     ),
     (Parameter::FloatTurning, 0.4),
-    (Parameter::StretchSquare, 0.01),
-    (Parameter::StretchDiagonal, 0.01),
-    (Parameter::Distortion, 0.01),
 ];
 const LEAST_ODDS: f64 = 3.0;
 pub(super) const CERTAIN_ODDS: f64 = 7.0;
@@ -122,12 +119,6 @@ fn remedy(parameter: Parameter) -> &'static str {
         }
         Parameter::FloatTurning => {
             "a float that is no sphere, or walls near by; fit it by --fit-also float, then state float_turning under [known]"
-        }
-        Parameter::StretchSquare | Parameter::StretchDiagonal => {
-            "cameras that look aslant, or pixels that are not square; calibrate them, or fit it by --fit-also tilt"
-        }
-        Parameter::Distortion => {
-            "calibrate the lens, or swim all runs at one place; fit it by --fit-also distortion"
         }
         _ => "fit it by --fit-also ct, then say so in the swimmer file",
     }
