@@ -201,7 +201,7 @@ impl std::fmt::Display for FitWarning {
             Self::Gain { found, gain, rival } => {
                 write!(
                     f,
-                    "the runs look as if the servos turned {found:.4} times what they are told (log-likelihood +{gain:.1}): r_s and \
+                    "the runs look as if the servos turned {found:.4} times the commanded angle (log-likelihood +{gain:.1}): r_s and \
                      chi are off if it is so; see --fit-also gain, then slope_rad_per_us in the swimmer file or gain under [known] in \
                      the campaign"
                 )?;

@@ -80,7 +80,7 @@ impl Logged {
         }
         if let Some([told, named]) = told_another(play, gait) {
             said.push(format!(
-                "the link log says otherwise: its joints were told up to {:.3}°, and {} turns them up to {:.3}°{}",
+                "the link log says otherwise: its joints were commanded up to {:.3}°, and {} turns them up to {:.3}°{}",
                 told.to_degrees(),
                 run.gait.readable(),
                 named.to_degrees(),

@@ -261,7 +261,7 @@ impl<'a> Run<'a> {
             warnings.push("no label tells the front reflector from the back one; the direction of travel was taken for forwards".to_owned());
         }
         if self.reflectors.sides.is_some() && self.joints.is_none() {
-            warnings.push("the reflectors on the side links were not seen in all parts of the cycle: the angles are those that the robot was told".to_owned());
+            warnings.push("the reflectors on the side links were not seen in all parts of the cycle: the angles are the commanded ones".to_owned());
         }
         let played = self.played();
         let [front, back] = [self.reflectors.front.at, self.reflectors.back.at];

@@ -30,7 +30,7 @@ impl fmt::Display for OtherGait {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "it sways like a gait of {:.3}°, not of {:.3}°, beside the other runs: correct its `gait`, or leave it out (`exclude = \"why\"`)",
+            "it sways like a gait of {:.3}°, not of {:.3}°, compared with the other runs: correct its `gait`, or leave it out (`exclude = \"why\"`)",
             self.sways_like_rad.to_degrees(),
             self.said_rad.to_degrees()
         )

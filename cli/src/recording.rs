@@ -13,7 +13,7 @@ pub(crate) struct Recording {
     /// Frames a second, where the recording does not say or is wrong
     #[arg(long, value_name = "HZ", value_parser = positive)]
     rate: Option<f64>,
-    /// Which of the recording's axes are the tank's x and y: x,-y for an image, z,x for Y up
+    /// The recording's axes that are the tank's x and y: x,-y for an image, z,x for Y up
     #[arg(long, value_name = "X,Y", value_parser = axes, allow_hyphen_values = true)]
     axes: Option<Axes>,
     /// The least likelihood that counts (DeepLabCut), 0.9 unless given

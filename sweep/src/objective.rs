@@ -219,7 +219,7 @@ impl Solver {
     fn of_speed(self, design: &Design) -> Result<SpeedProblem, String> {
         let rates = design
             .rates
-            .ok_or_else(|| "no rate of the servos is told".to_owned())?;
+            .ok_or_else(|| "no rate of the servos is given".to_owned())?;
         let problem = SpeedProblem {
             bounds: design.bounds,
             ..SpeedProblem::new(design.swimmer, rates)

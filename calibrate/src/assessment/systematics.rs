@@ -112,7 +112,7 @@ fn remedy(parameter: Parameter) -> &'static str {
             "fit it by --fit-also deadband, then say so by [servo] dead_band in the swimmer file"
         }
         Parameter::FrontLag => {
-            "let both servos be told at once, or let reflectors on the side links show the angles ([reflectors] front_link)"
+            "command both servos at once, or let reflectors on the side links show the angles ([reflectors] front_link)"
         }
         Parameter::DeadBandDifference => {
             "exchange a servo, or let reflectors on the side links show the angles ([reflectors] front_link)"

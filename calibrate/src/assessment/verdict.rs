@@ -237,7 +237,7 @@ fn of_runs(found: &CampaignFit, goodness: &Goodness, say: &mut impl FnMut(Verdic
             say(
                 Verdict::Caution,
                 format!(
-                    "lengths of {} are {scale:.3} ± {error:.3} of what the other runs foretell: a wall near by, or another scale",
+                    "lengths of {} are {scale:.3} ± {error:.3} of those predicted from the other runs: a wall near by, or another scale",
                     short(&run.file)
                 ),
             );

@@ -73,7 +73,7 @@ pub(super) fn read(
             let text = cell_at(&unit_cells, at);
             let unit = unit_of(units, &text, file)?;
             if *own.get_or_insert(unit) != unit {
-                let text = format!("{unit} beside another unit");
+                let text = format!("{unit} next to another unit");
                 return Err(units.error(file, 0, TrackProblem::UnknownUnit { text }));
             }
         }

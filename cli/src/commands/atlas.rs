@@ -39,16 +39,16 @@ pub(crate) struct Atlas {
     /// A preset that `swimmer swimmers` lists, or a swimmer file
     #[arg(long, value_name = "SWIMMER")]
     swimmer: String,
-    /// What the gaits are optimal for
+    /// Objective of the gaits
     #[arg(long, value_name = "OBJECTIVE")]
     objective: Aim,
     /// No servo turns faster than this angle a second, a second one is that of joint 2: needed for speed; for displacement and
-    /// efficiency the table then tells how fast each gait is in its shortest period
+    /// efficiency the table then has the speed of each gait in its shortest period
     #[arg(long, value_name = "ANGLE_PER_S", value_parser = rate, num_args = 1..=2)]
     max_rate: Vec<f64>,
     #[command(flatten)]
     bounds: WholeBounds,
-    /// How many random starts; gaits that are found without a guess are starts, too, and not counted here
+    /// Number of random starts; known gaits are additional starts and not counted here
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     starts: u32,
     /// Seed of the starts

@@ -39,7 +39,7 @@ pub(crate) struct Calibrate {
     /// A campaign (.toml) or a tracking file
     #[arg(value_name = "CAMPAIGN.toml | RUN.csv")]
     file: PathBuf,
-    /// What was played in a single run: circle:AMPLITUDE, square:AMPLITUDE or a gait file
+    /// Gait of a single run: circle:AMPLITUDE, square:AMPLITUDE or a gait file
     #[arg(long, value_name = "GAIT", value_parser = gait)]
     gait: Option<GaitSpec>,
     /// Seconds a cycle took in a single run

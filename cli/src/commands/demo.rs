@@ -43,7 +43,7 @@ use operations::bounds::playable;
 /// Only the tank knows the truth.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Demo {
-    /// Where to leave the results; left out: demo-out, or the first free of demo-out-2, demo-out-3, …
+    /// Folder of the results; left out: demo-out, or the first free of demo-out-2, demo-out-3, …
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
     /// Seed of tank and cameras
@@ -52,7 +52,7 @@ pub(crate) struct Demo {
     /// The truth in the tank: purcell, robot, robot-slender or a swimmer file
     #[arg(long, value_name = "SWIMMER", default_value = "robot")]
     swimmer: String,
-    /// What carries the robot's brain
+    /// Robot of the demo
     #[arg(long, value_enum, value_name = "ROBOT", default_value = "twin")]
     robot: Carrier,
     #[command(flatten)]
@@ -331,7 +331,7 @@ impl<'a> Round<'a> {
     }
 }
 
-/// Why there is no gait on the robot.
+/// Reason why the gait is not on the robot.
 enum Refused {
     /// Not with these shapes; others may do.
     Here(Failure),

@@ -28,7 +28,7 @@ pub(crate) struct HeightMap {
     /// A preset that `swimmer swimmers` lists, or a swimmer file
     #[arg(long, value_name = "SWIMMER")]
     swimmer: String,
-    /// Which displacement: along the swimmer, across it, or rotation
+    /// Component of the displacement: along the swimmer, across it, or rotation
     #[arg(long, value_enum, default_value_t = Component::X)]
     row: Component,
     /// Map joint angles up to this, either way; the frame is the one that turns and sways least over just these

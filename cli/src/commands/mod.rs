@@ -45,7 +45,7 @@ pub(crate) struct Arguments {
     /// Replace files that exist; without it a command that would write one refuses
     #[arg(long, global = true, help_heading = "Options of every command")]
     pub(crate) overwrite: bool,
-    /// Also tell what only an expert asks for: how an answer was found, what a search saw before it failed
+    /// Also print details for experts: the origin of a result, and the course of a search that failed
     #[arg(long, global = true, help_heading = "Options of every command")]
     pub(crate) verbose: bool,
     /// Command to run.

@@ -66,7 +66,7 @@ enum Action {
     Status,
     /// Tell the robot its lengths and drag, and tighten its limits; stored on the robot
     Configure(Configure),
-    /// Foretell what the robot will make of a gait, and send it
+    /// Predict how the robot will play a gait, and send it
     Upload(Upload),
     /// Power the servos and hold the link until Ctrl-C (= stop)
     Arm(Arm),
@@ -120,8 +120,8 @@ struct Upload {
     owner: Owner,
     #[command(flatten)]
     preflight: preflight::Arguments,
-    /// Send nothing: only foretell what the robot will make of the gait. Without --port no robot is asked, and the swimmer
-    /// is that of --swimmer; exit status 1 if the gait must not be played
+    /// Send nothing: only predict the robot's play of the gait. Without --port no robot is contacted, and the swimmer is that of
+    /// --swimmer; exit status 1 if the gait must not be played
     #[arg(long)]
     dry_run: bool,
 }
@@ -156,7 +156,7 @@ struct Play {
     room: preflight::Room,
     #[command(flatten)]
     owner: Owner,
-    /// End after so many cycles; left out, the robot plays until Ctrl-C
+    /// End after this many cycles; left out, the robot plays until Ctrl-C
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     cycles: Option<u32>,
     /// Seconds a cycle takes
@@ -182,14 +182,14 @@ struct Pause {
 
 #[derive(Debug, clap::Args)]
 struct Stop {
-    /// Where another `swimmer` has the port and hangs: stop the robot past it, without asking
+    /// If another `swimmer` has the port and hangs: stop the robot past it, without asking
     #[arg(long)]
     take_over: bool,
 }
 
 #[derive(Debug, clap::Args)]
 struct Estop {
-    /// Where another `swimmer` has the port and hangs: leave it alone, and fail
+    /// If another `swimmer` has the port and hangs: leave it alone, and fail
     #[arg(long)]
     no_take_over: bool,
     /// End a latched e-stop instead, and leave the robot stopped; asks first
@@ -212,17 +212,17 @@ struct Trim {
 
 #[derive(Debug, clap::Args)]
 struct Watch {
-    /// End after so many seconds
+    /// End after this many seconds
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     seconds: Option<f64>,
 }
 
 #[derive(Debug, clap::Args)]
 struct Log {
-    /// Where to write; nothing may be there yet
+    /// File to write; it must not exist
     #[arg(value_name = "FILE.mcap")]
     file: PathBuf,
-    /// End after so many seconds
+    /// End after this many seconds
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     seconds: Option<f64>,
 }

@@ -14,7 +14,7 @@ use crate::output::{Output, write_all};
 /// Print what a shell needs to complete the command
 #[derive(Debug, clap::Args)]
 pub(crate) struct Completions {
-    /// Which shell
+    /// Shell of the completions
     #[arg(value_enum, value_name = "SHELL")]
     shell: Shell,
 }
@@ -22,7 +22,7 @@ pub(crate) struct Completions {
 /// Write the manual pages, one for each command
 #[derive(Debug, clap::Args)]
 pub(crate) struct Man {
-    /// Where to; a folder named man1 is where `man` looks
+    /// Folder of the pages; `man` searches a folder named man1
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
 }

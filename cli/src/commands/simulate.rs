@@ -23,17 +23,17 @@ use crate::report::swimming::{ANIMATION_SIZE, FRAMES_PER_SECOND, Swimming, anima
 
 use played::played_rows;
 
-/// Swim a gait in the model and print what one cycle brings
+/// Swim a gait in the model and print the results of one cycle
 #[derive(Debug, clap::Args)]
 pub(crate) struct Simulate {
     /// A preset that `swimmer swimmers` lists, or a swimmer file
     #[arg(long, value_name = "SWIMMER")]
     swimmer: String,
-    /// circle:AMPLITUDE, square:AMPLITUDE or a gait file; add :cw to reverse it. With a passive joint only the other joint of it is
+    /// circle:AMPLITUDE, square:AMPLITUDE or a gait file; add :cw to reverse it. With a passive joint only the other joint is
     /// driven, and sine:AMPLITUDE drives it with AMPLITUDE cos 2πu
     #[arg(long, value_name = "GAIT")]
     gait: Drive,
-    /// How many cycles the trajectory and the snapshots have; the printed values are always those of the first
+    /// Number of cycles of the trajectory and the snapshots; the printed values are always those of the first
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     cycles: u32,
     /// Write the path of the middle link as a table: cycle, u, joint angles, pose

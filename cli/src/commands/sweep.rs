@@ -46,7 +46,7 @@ pub(crate) struct Run {
     /// Only this share of the blocks, as 2/7: every seventh, from the second on
     #[arg(long, value_name = "I/N", value_parser = shard)]
     shard: Option<Shard>,
-    /// Threads to work on; as many as there are cores unless told otherwise
+    /// Number of threads; by default the number of cores
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 }
@@ -63,7 +63,7 @@ pub(crate) struct Status {
 pub(crate) struct Merge {
     /// The folder of the plan
     folder: PathBuf,
-    /// Where to write the table
+    /// File of the table
     #[arg(short, long, value_name = "FILE.parquet")]
     output: PathBuf,
 }

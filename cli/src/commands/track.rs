@@ -35,7 +35,7 @@ pub(crate) struct Track {
     /// Record the frames here; nothing may be there yet
     #[arg(short, long, value_name = "FILE.csv|.mcap")]
     output: Option<PathBuf>,
-    /// End after so many seconds of the camera clock
+    /// End after this many seconds of the camera clock
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     seconds: Option<f64>,
     /// Read a recording, or run the twin, as fast as possible instead of at its own pace

@@ -44,7 +44,7 @@ pub(crate) struct Twin {
     swimmer: String,
     /// Faults of the link, both directions: drop=P,flip=P,duplicate=P,reorder=P (a chance per frame, 5% or 0.05),
     /// delay=MS, clump=BYTES, stale=BYTES (let out again after a silence), baud=RATE, rate=BYTES (a second, towards the robot),
-    /// buffer=BYTES (that wait for that rate; what finds no room is lost), disconnect=START:LENGTH or START:LENGTH:EVERY (ms)
+    /// buffer=BYTES (that wait for that rate; more are lost), disconnect=START:LENGTH or START:LENGTH:EVERY (ms)
     #[arg(long, value_name = "FAULTS", default_value = "", hide_default_value = true, value_parser = faults)]
     faults: Faults,
     /// Seed of faults and cameras
@@ -59,8 +59,8 @@ pub(crate) struct Twin {
     /// Stream to Motive's multicast group instead of to each client
     #[arg(long, requires = "natnet")]
     multicast: bool,
-    /// What a servo truly is and the robot does not know, as front:sign=-,centre=1512 (µs) or back:slope=0.0287 (rad a µs): for
-    /// trying `swimmer robot setup`
+    /// True properties of a servo that the robot does not know, as front:sign=-,centre=1512 (µs) or back:slope=0.0287 (rad a µs):
+    /// for trying `swimmer robot setup`
     #[arg(long = "servo", value_name = "JOINT:KEY=VALUE,…", value_parser = odd::servo)]
     servos: Vec<odd::Servo>,
     /// Half width of the servos' dead band, in place of the swimmer file's
@@ -72,7 +72,7 @@ pub(crate) struct Twin {
     /// Print both joint angles whenever they come to rest: what one would see at the bench
     #[arg(long)]
     show_joints: bool,
-    /// What carries the robot's brain
+    /// Implementation of the robot
     #[arg(long, value_enum, value_name = "ROBOT", default_value = "twin")]
     robot: Carrier,
     #[command(flatten)]

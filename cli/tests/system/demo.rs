@@ -32,7 +32,7 @@ fn demo(folder: &Path, words: &[&str], truth: (f64, f64)) -> serde_json::Value {
         "predicted {predicted} m, tracked {tracked} m"
     );
     assert!(predicted > 0.0);
-    // As fast as the servos go, and still as foretold.
+    // At the full rate of the servos, and still as predicted.
     let race = &found["race"];
     for gait in ["fastest", "farthest"] {
         let speed = |key: &str| number(&race[gait], key);
@@ -103,12 +103,12 @@ fn wrong_gaits_are_named(demo: &Path) {
     for said in [
         "circle-090.csv and circle-090.csv hold the same recording",
         "circle-060.csv: it sways like a gait of 60.0",
-        "circle-060.csv: the link log says otherwise: its joints were told up to 60.0",
+        "circle-060.csv: the link log says otherwise: its joints were commanded up to 60.0",
         "circle-090.csv: it sways like a gait of 89.88",
     ] {
         assert!(ran.stdout.contains(said), "{said}: {ran}");
     }
-    // A single recording is held against the swimmer that is named.
+    // A single recording is compared with the named swimmer.
     let single = |gait| {
         let words = [
             "calibrate",
@@ -298,7 +298,7 @@ fn another_seed_and_another_swimmer() {
     demo(folder.path(), &["--swimmer", "other.toml"], (0.035, 2.6));
 }
 
-/// Nothing to divide by: the fitted sphere is held against zero in millimetres.
+/// The fitted sphere is compared with zero in millimetres, since a relative error is undefined.
 #[test]
 fn a_swimmer_without_a_sphere() {
     let folder = tempfile::tempdir().unwrap();

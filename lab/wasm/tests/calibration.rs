@@ -78,7 +78,7 @@ fn a_gait_of_another_size_is_told() {
         warning
             .as_str()
             .unwrap()
-            .contains("not of 46.000°, beside the other runs")
+            .contains("not of 46.000°, compared with the other runs")
     };
     assert_eq!(
         warnings.iter().filter(|warning| said(warning)).count(),

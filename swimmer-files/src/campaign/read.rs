@@ -231,7 +231,7 @@ fn run(
         .first_number()
         .or_else(|| Some(("results", raw.results.as_ref()?.span().start)));
     if let Some((key, place)) = also {
-        let problem = format!("{key} beside a track: a run is tracked or told, not both");
+        let problem = format!("{key} next to a track: a run is tracked or reported, not both");
         return Err(error(place, problem));
     }
     let log_place = raw.log.as_ref().map_or(0, |log| log.span().start);
@@ -358,7 +358,7 @@ fn told_runs(
         return Ok(vec![run(track.into(), gait, told)]);
     };
     if let Some((_, place)) = raw.first_number() {
-        let problem = "numbers beside a table of results: the table has them all".to_owned();
+        let problem = "numbers next to a table of results: the table has them all".to_owned();
         return Err(error(place, problem));
     }
     let file = folder.join(results.get_ref());

@@ -320,7 +320,7 @@ fn results_instead_of_a_track() {
         ("x_mm = 1.0\ncycles = 2.5", "6:10", "1, 2, 3"),
         ("x_mm = 1.0\nlog = \"a.mcap\"", "6:7", "about a track"),
         ("x_mm = 1.0\ntrack = \"a.csv\"", "5:8", "not both"),
-        ("x_mm = 1.0\nresults = \"a.csv\"", "5:8", "beside a table"),
+        ("x_mm = 1.0\nresults = \"a.csv\"", "5:8", "next to a table"),
         ("x_cm = 1.0", "5:1", "unknown field"),
     ] {
         let text = told(numbers).replace("[[run]]", if numbers.contains("track") {

@@ -464,7 +464,7 @@ fn unit(
             })?),
         };
         if *unit.get_or_insert(named) != named {
-            let text = format!("{} beside another unit", name.unit.unwrap_or("none"));
+            let text = format!("{} next to another unit", name.unit.unwrap_or("none"));
             return Err(error(index, TrackProblem::UnknownUnit { text }));
         }
     }

@@ -132,7 +132,7 @@ impl fmt::Display for RunsAnswer {
 fn left_out(f: &mut fmt::Formatter<'_>, runs: &[RunAnswer]) -> fmt::Result {
     for run in runs {
         if run.front_rule.is_none() {
-            write!(f, "\n  {}: told, without a track", run.file)?;
+            write!(f, "\n  {}: reported, without a track", run.file)?;
             continue;
         }
         write!(
@@ -252,7 +252,7 @@ fn millimetres(metres: f64) -> String {
     format!("{:.3}", metres * 1e3)
 }
 
-/// A mean with its deviation, where there is one: a single cycle has none.
+/// A mean with its deviation, if there are several cycles.
 fn with_deviation([mean, deviation]: [f64; 2], written: fn(f64) -> String) -> String {
     if mean.is_nan() {
         "–".to_owned()

@@ -161,7 +161,7 @@ impl AssessmentAnswer {
         let mut notes = vec![format!(
             "reduced χ² by the cycles' own scatter {} ({} degrees of freedom), with systematics {}; chance is that of a Y and a net turn \
              so far from the model's by scatter alone (a symmetric gait has neither with ideal servos; a dead band turns its way, so \
-             that it has Y); lengths are X and ΔY over what the other runs foretell",
+             that it has Y); lengths are X and ΔY over those predicted from the other runs",
             chi2(self.reduced_chi2),
             self.goodness.freedom,
             chi2(self.goodness.reduced_chi2_with_systematics)

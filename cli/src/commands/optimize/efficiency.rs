@@ -27,10 +27,11 @@ const ROBUST_ORDER: usize = 6;
 /// Closed curves with the paper's two symmetries, or any closed curve if the side links differ, run counter-clockwise at constant power. No guess is needed.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Efficiency {
-    /// Which optimum: small has X > 0, large has X < 0 and a start angle above 2 rad
+    /// Local optimum: small has X > 0, large has X < 0 and a start angle above 2 rad
     #[arg(long, value_name = "GAIT", default_value = "small")]
     gait: Which,
-    /// What leads to the polish: Fourier series alone, collocation from a circle, or multiple shooting from a Fourier gait of low order
+    /// Method of the initial guess: Fourier series alone, collocation from a circle, or multiple shooting from a Fourier gait of
+    /// low order
     #[arg(long, value_name = "METHOD", default_value = "auto")]
     method: How,
     #[command(flatten)]

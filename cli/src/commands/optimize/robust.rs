@@ -29,10 +29,11 @@ pub(super) struct Robustly {
     /// of the servos' gain where it was fitted along
     #[arg(long, value_name = "FIT.json")]
     robust: Option<PathBuf>,
-    /// Design for servos that turn between so many times what they are told, as 0.98 1.02; bounds and rates are about what is told
+    /// Design for servos with a gain (actual over commanded angle) in this interval, as 0.98 1.02; bounds and rates apply to the
+    /// command
     #[arg(long, value_names = ["LOW", "HIGH"], value_parser = gain, num_args = 2)]
     gain: Vec<f64>,
-    /// Of --robust or --gain: maximise the worst case over the intervals (of radius and χ their ellipse, where the fit tells the
+    /// Of --robust or --gain: maximise the worst case over the intervals (of radius and χ their ellipse, if the fit has the
     /// correlation), which is the default, or the mean
     #[arg(long, value_name = "WHAT")]
     over: Option<Which>,
@@ -76,7 +77,7 @@ pub(super) fn as_written(gait: &OptimalGait) -> OptimalGait {
     gait
 }
 
-/// Why there is no robust gait, with the options that were in the way.
+/// Failure of a robust design, with the options that caused it.
 pub(super) fn refused(error: RobustError, bounds: &impl Given) -> Failure {
     let options = match &error {
         RobustError::Arc { kind } => bounds.given(Some(*kind)),
@@ -144,7 +145,7 @@ pub(super) fn robust_gait(
     Ok(Found::gait(answer, task, &written, timed))
 }
 
-/// Adds what robustness costs and brings, who holds the worst case, and what is other than of the nominal optimum.
+/// Adds cost and benefit of robustness, the members of the worst case, and the differences from the nominal optimum.
 pub(super) fn tell_robustness(answer: &mut Document, found: &Robustness, quantity: &'static str) {
     let (robust, nominal) = (&found.values, &found.nominal);
     let [crossing, nominal_crossing] = found.links_cross;

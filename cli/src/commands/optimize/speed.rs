@@ -22,19 +22,19 @@ use crate::threads;
 /// Find the fastest gait: most net displacement per unit of time, without net rotation, with servos that turn no faster than a
 /// given rate
 ///
-/// With --robust or --gain: with the worst swimmer that is left open, or in the mean, beside what the fastest gait of the estimates
-/// would bring there: along gaits that turn none of the swimmers, as the fastest as a rule are where both side links are alike.
+/// With --robust or --gain: with the worst swimmer of the uncertainty, or in the mean, compared with the fastest gait of the
+/// estimates: along gaits that turn none of the swimmers, which is usual for the fastest gaits of equal side links.
 ///
 /// Fastest means the best of all cycles of at most 16 corners: a chain of unlike cycles may always beat each of them, and a
-/// longer cycle that was met and is better by more than 1e-6 is told. With a prescribed heading there often is one, as a cycle may
-/// tack: lead to either side of the heading in turn, the faster the less often it turns, up to the speed of the fastest gait of any
-/// heading, which is told beside it. The gait is timed as it shall run, with its corners where a servo turns round.
+/// longer cycle that is better by more than 1e-6 is reported. With a prescribed heading there often is one, as a cycle may tack:
+/// lead to either side of the heading in turn, the faster the less often it turns, up to the speed of the fastest gait of any
+/// heading, which is also reported. The gait is timed as it shall run, with its corners where a servo reverses.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Speed {
     /// No servo turns faster than this angle a second; a second one is that of joint 2
     #[arg(long, value_name = "ANGLE_PER_S", value_parser = rate, num_args = 1..=2, required_unless_present = "playable")]
     max_rate: Vec<f64>,
-    /// Which way the gait shall lead, against the mean heading of its cycle
+    /// Direction of the displacement, relative to the mean heading of its cycle
     #[arg(long, value_name = "HEADING", value_enum, default_value = "any")]
     heading: Heading,
     /// The farthest gait in this many seconds, instead of the fastest: a cycle, several laps of one, or one and a rest

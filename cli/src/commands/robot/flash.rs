@@ -26,7 +26,7 @@ const IMAGES: &str = "target/firmware-images";
 
 /// Put a new firmware onto the robot's board, over its USB cable
 ///
-/// The robot, stopped and with somebody at it (over its USB cable, or with its bench jumper closed), is asked into its boot
+/// The robot, stopped and with somebody at it (over its USB cable, or with its bench jumper closed), is sent to its boot
 /// loader; its drive is found, and the image copied onto it. A board that does not answer is brought there by hand: Pico,
 /// hold BOOTSEL while you plug it in; Nano, join REC to GND while you plug it in; then --by-hand.
 #[derive(Debug, clap::Args)]

@@ -17,7 +17,7 @@ use crate::quantity::Rows;
 ///
 /// Take the module off the robot. Adapter at 3.3 V: its RXD to the module's TXD, its TXD to RXD, GND to GND, 5 V to VCC.
 /// Hold the module's button (or KEY, EN at 3.3 V) while it gets its power and until this command has ended: its LED goes
-/// 2 s on, 2 s off. What is right already is left alone, and what was set is read back.
+/// 2 s on, 2 s off. Correct settings are left alone, and changed ones are read back.
 #[derive(Debug, clap::Args)]
 pub(super) struct Hc05 {
     /// The name that computers see; left out, it stays
@@ -26,7 +26,7 @@ pub(super) struct Hc05 {
     /// The PIN for pairing, 4 to 16 digits; left out, it stays (1234 from the maker)
     #[arg(long, value_name = "DIGITS")]
     pin: Option<String>,
-    /// Only ask, and exit with 1 where something is not as wanted
+    /// Only check, and exit with 1 if a setting differs
     #[arg(long)]
     check: bool,
     /// Speed of the module's AT mode: 38400 unless its button was pressed after power came
@@ -121,18 +121,19 @@ impl Hc05Output {
 
 impl fmt::Display for Hc05Output {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let told = |value: &Option<String>| value.clone().unwrap_or_else(|| "not told".to_owned());
+        let told =
+            |value: &Option<String>| value.clone().unwrap_or_else(|| "not reported".to_owned());
         let speed = |settings: &Settings| match (settings.baud, settings.stop_bits, settings.parity)
         {
             (Some(baud), Some(stop), Some(parity)) => {
                 format!("{baud} baud, {stop} stop bit(s), parity {parity}")
             }
-            _ => "not told".to_owned(),
+            _ => "not reported".to_owned(),
         };
         let role = |settings: &Settings| match settings.role {
             Some(0) => "waits to be called".to_owned(),
             Some(role) => format!("{role}, does not wait to be called"),
-            None => "not told".to_owned(),
+            None => "not reported".to_owned(),
         };
         let mut rows = Rows::default();
         rows.row("firmware", told(&self.version));

@@ -32,7 +32,7 @@ pub(super) struct KeyFile {
 /// Set or remove the key that the robot shares with its hosts
 ///
 /// A robot with a key does only what is signed with it, but stops for anybody. The key is stored on the robot and crosses
-/// the wire in the clear: set it at the bench over a cable. A robot that has a key already must be told with --key.
+/// the wire in the clear: set it at the bench over a cable. The present key of a robot, if it has one, is given by --key.
 #[derive(Debug, clap::Args)]
 #[command(subcommand_value_name = "ACTION", subcommand_help_heading = "Actions")]
 pub(super) struct KeyChange {

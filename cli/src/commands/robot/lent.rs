@@ -244,7 +244,7 @@ impl LentPort {
                 }),
                 Ask::Status if self.state().is_some() => Relayed::of(&Done {
                     state: self.state().map_or("stopping", state),
-                    sentence: "As the robot told last.".to_owned(),
+                    sentence: "By the robot's last report.".to_owned(),
                 }),
                 _ => Relayed::refused(format!(
                     "the lab page's server has {} and asks the robot nothing by itself: look at the page, or end `swimmer lab`",

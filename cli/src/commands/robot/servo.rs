@@ -22,16 +22,16 @@ use crate::quantity::{self, Rows};
 /// robot is stopped.
 #[derive(Debug, clap::Args)]
 pub(super) struct Servo {
-    /// Which joint
+    /// Joint of the servo
     #[arg(value_enum, value_name = "JOINT")]
     joint: JointName,
-    /// Whether the joint turns to its left as the pulse gets longer (+) or shorter (-)
+    /// Sign of the servo: the joint turns to its left as the pulse gets longer (+) or shorter (-)
     #[arg(long, value_enum, value_name = "+|-", allow_hyphen_values = true)]
     sign: Option<Sign>,
     /// Pulse of the straight joint, µs
     #[arg(long, value_name = "US", value_parser = centre_us)]
     centre: Option<f64>,
-    /// How far a µs of pulse turns it, as 1.57deg, or bare in radians
+    /// Slope: the turn of the joint per µs of pulse, as 1.57deg, or bare in radians
     #[arg(long, value_name = "ANGLE", value_parser = positive_angle)]
     slope: Option<f64>,
     /// Shortest and longest pulse that its end stops allow, µs, as 1400,1600: gaits beyond are refused

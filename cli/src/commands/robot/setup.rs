@@ -50,10 +50,10 @@ const JOINTS: [Joint; 2] = [Joint::Front, Joint::Back];
 /// robot stopped and everything as it was. At the end the robot has stored its maps, and a swimmer file its `[servo]`.
 #[derive(Debug, clap::Args)]
 pub(super) struct Setup {
-    /// purcell, robot, robot-slender or a swimmer file with the links' lengths; left out, it is asked for
+    /// purcell, robot, robot-slender or a swimmer file with the links' lengths; left out, the set-up prompts for it
     #[arg(long, value_name = "SWIMMER")]
     swimmer: Option<String>,
-    /// Write the swimmer file with what was found; left out, it is asked for
+    /// Write the swimmer file with the results; left out, the set-up prompts for it
     #[arg(short, long, value_name = "FILE.toml")]
     output: Option<PathBuf>,
 }

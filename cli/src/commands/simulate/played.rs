@@ -10,8 +10,8 @@ use forecast::Servos;
 /// Settings of the play on the robot.
 #[derive(Debug, clap::Args)]
 pub(super) struct Playing {
-    /// Also foretell a cycle on the robot, loss by loss: table, ticks, pulses, and the servos of the swimmer file (or the
-    /// twin's, where it names none)
+    /// Also predict a cycle on the robot, loss by loss: table, ticks, pulses, and the servos of the swimmer file (or the twin's,
+    /// if it has none)
     #[arg(long)]
     played: bool,
     /// Seconds a cycle takes: for --played, and for torque and power where the swimmer file names a fluid

@@ -24,16 +24,16 @@ use crate::quantity::{Rows, Table};
 pub(crate) struct Map {
     /// The folder of the plan
     folder: PathBuf,
-    /// The axis to the right; the first one unless told
+    /// The axis to the right; by default the first one
     #[arg(long, value_name = "AXIS", value_parser = field)]
     across: Option<Field>,
-    /// The axis upwards; the second one unless told
+    /// The axis upwards; by default the second one
     #[arg(long, value_name = "AXIS", value_parser = field)]
     up: Option<Field>,
-    /// Where on another axis, as drag.chi=2 or objective=speed: its nearest value is taken; its first one unless told
+    /// Value on another axis, as drag.chi=2 or objective=speed: the nearest one is taken; by default the first one
     #[arg(long, value_name = "AXIS=VALUE", value_parser = at)]
     at: Vec<(Field, f64)>,
-    /// What to draw
+    /// Quantity of the map
     #[arg(long, value_enum, default_value_t = Drawn::Displacement)]
     quantity: Drawn,
     /// Write the picture: .svg, or .png in pixels
@@ -59,7 +59,7 @@ pub(super) enum Drawn {
     Rotation,
     /// Y/L of a cycle
     Lateral,
-    /// Which arcs the gait is made of
+    /// Arcs of the gait
     Structure,
     /// Speed against efficiency of all designs that no other one beats in both
     Pareto,

@@ -21,10 +21,10 @@ pub(crate) enum Submit {
     Slurm(SlurmJob),
 }
 
-/// Write the script of a Slurm job array, one shard a task, and submit it where asked
+/// Write the script of a Slurm job array, one shard a task, and submit it with --submit
 ///
-/// Its time limit follows what designs cost so far, so run a few blocks first (`swimmer sweep run`, stopped after a while), or
-/// say --time. A task whose node is lost is requeued and passes over what is finished.
+/// Its time limit follows the cost of the designs so far, so run a few blocks first (`swimmer sweep run`, stopped after a while),
+/// or give --time. A task whose node is lost is requeued and skips finished blocks.
 #[derive(Debug, clap::Args)]
 pub(crate) struct SlurmJob {
     /// The folder of the plan, on a disk that every node sees
@@ -35,13 +35,13 @@ pub(crate) struct SlurmJob {
     /// Cores of each
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=1024))]
     cores: u64,
-    /// Time limit of each, in minutes; by what designs cost so far unless told
+    /// Time limit of each, in minutes; by default from the cost of the designs so far
     #[arg(long, value_name = "MINUTES", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     time: Option<u64>,
     /// One more option of sbatch, as --option=--partition=short; may be given several times
     #[arg(long, value_name = "OPTION", allow_hyphen_values = true)]
     option: Vec<String>,
-    /// The script to write; DIR/slurm.sh unless told
+    /// The script to write; by default DIR/slurm.sh
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Hand the script to sbatch

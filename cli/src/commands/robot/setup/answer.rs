@@ -44,7 +44,7 @@ impl fmt::Display for Done {
         match &self.file {
             Some(file) => write!(
                 f,
-                "{file} holds the swimmer with these servos: name it with --swimmer wherever a gait is foretold."
+                "{file} holds the swimmer with these servos: name it with --swimmer for predictions of a gait."
             ),
             None => write!(
                 f,
