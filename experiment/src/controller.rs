@@ -410,7 +410,7 @@ impl Controller {
         let motion = self.planner.net(&member).position().norm();
         let near_wall = !self
             .planner
-            .has_room(here, &member, self.options.spare_m + motion);
+            .stays_clear(here, &member, self.options.spare_m + motion);
         self.phase = Phase::Waiting {
             play: Play {
                 member,

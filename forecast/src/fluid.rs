@@ -4,7 +4,7 @@ use swimmer_files::Fluid;
 use swimmer_model::{Gait, Model};
 
 /// Looks at a cycle.
-const LOOKS: u32 = 2000;
+const SAMPLES: u32 = 2000;
 
 /// Load of one cycle with ideal servos, in the time parametrisation of the gait.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,13 +46,13 @@ pub fn demand<G: Gait<f64> + ?Sized>(
         torque: [0.0; 2],
         reynolds: 0.0,
     };
-    for look in 0..LOOKS {
-        let point = gait.at((f64::from(look) + 0.5) / f64::from(LOOKS));
+    for sample in 0..SAMPLES {
+        let point = gait.at((f64::from(sample) + 0.5) / f64::from(SAMPLES));
         let rate = point.rate / period;
         // The power is that of the joints alone, so their torques are W times their rates.
         let torque = model.power_matrix(&point.phi) * rate * fluid.viscosity();
         let power = torque.dot(&rate);
-        found.power += power / f64::from(LOOKS);
+        found.power += power / f64::from(SAMPLES);
         found.peak_power = found.peak_power.max(power);
         for (most, torque) in found.torque.iter_mut().zip(torque.iter()) {
             *most = most.max(torque.abs());

@@ -46,7 +46,7 @@ pub use losses::{
     Forecast, ForecastError, Loss, Played, Servos, Stage, Verdict, forecast, thickness,
 };
 pub use net_motion::NetMotion;
-pub use plan::{Errand, Family, Kind, Member, Plan, PlanError, Planner, Scaled, Step, plan};
+pub use plan::{Family, Kind, Member, Plan, PlanError, PlanRequest, Planner, Scaled, Step, plan};
 pub use playlist::{PlaylistTable, Repeated};
 pub use reach::{Reach, reach};
 pub use table::table;

@@ -1,21 +1,21 @@
-//! Gaits of one family strung together to a target.
+//! Motion plans: chains of gaits of one family that lead to a target pose.
 //!
-//! All gaits start and end at one common shape, so what a chain of them brings is a product of poses. Each has a family: the gait
-//! drawn towards the common shape by a scale of at most 1, with the servos as fast as before, and its own net pose, swum anew as
-//! the servos play it. A leg is a number of cycles of one member, forwards or backwards; three legs have three scales, which meet a
-//! target's three coordinates exactly. Beside a wall, where such legs have no room, ways out are looked for with the cycles that
-//! have, from the start and (every gait can be undone) from the target; three legs lead from one to the other. The search takes the
-//! quickest chain that it finds; walls are respected.
+//! All gaits start and end at one common shape, so the net motion of a chain is the product of the net poses of its cycles. Each
+//! gait has scaled members: its curve is contracted towards the common shape by a scale of at most 1, at the same speed of the
+//! servos. The net pose of each member is computed anew, as the servos play it. A leg is a number of cycles of one member, forwards
+//! or backwards. Three legs have three scales, which meet the three coordinates of a target exactly. If such legs do not fit next to
+//! a wall, the search looks for approaches with smaller cycles, from the start and from the target (every gait can be reversed);
+//! three legs then lead from one to the other. The plan is the quickest chain found that stays clear of the walls.
 //!
-//! The robot's tables cut corners, its servos have a dead band, and the ways from and to the straight shape are ramps. So a chain
-//! is played, with the robot's own arithmetic, and aimed as far beside the target as it misses it by, until it is met.
+//! The robot's tables cut corners, its servos have a dead band, and the ways from and to the straight shape are ramps. A chain is
+//! therefore played with the robot's own arithmetic, and the aim is shifted by the miss until the played chain meets the target.
 
 mod aim;
 mod legs;
 mod member;
 mod planner;
-mod room;
 mod search;
+mod walls;
 mod way_out;
 
 use nalgebra::Vector2;
@@ -28,52 +28,52 @@ use crate::playlist::{Repeated, leads_to};
 use crate::tank::Tank;
 use aim::Hit;
 use member::Nets;
-use room::{Room, Sweeps, SweptAreas};
-use search::{EFFORTS, Seen, quickest};
+use search::{EFFORTS, SearchCounts, quickest};
+use walls::{Sweeps, SweptAreas, Walls};
 
 pub use member::{Kind, Member, Scaled};
 pub use planner::Planner;
 
-/// The gaits that a plan is made of.
+/// Gaits of a plan.
 #[derive(Debug, Clone)]
 pub struct Family {
-    /// One of each kind, all from one common shape: forward, left, turning left; with the seconds that a cycle takes.
+    /// Forward, left and left-turning gait, all from one common shape, each with the duration of a cycle \[s\].
     pub gaits: [(AnyGait, f64); 3],
-    /// All of them seen in a mirror along the body, φ ↦ −φ: left is right then, and the common shape bends the other way.
+    /// Mirrored along the body, φ ↦ −φ: left and right are exchanged, and the common shape bends the other way.
     pub mirrored: bool,
 }
 
-/// What is asked for. Poses are those of the middle link with all joints straight, from the tank's centre: the way from there to
-/// the common shape, and back at the end, belongs to the plan.
+/// Request for a plan. Poses are those of the middle link with all joints straight, relative to the tank's centre: the motion from
+/// there to the common shape, and back at the end, belongs to the plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Errand {
-    /// Where the swimmer is \[m, rad\].
+pub struct PlanRequest {
+    /// Start pose \[m, rad\].
     pub from: Pose<f64>,
-    /// Where it shall go \[m\].
+    /// Target position \[m\].
     pub to: Vector2<f64>,
-    /// Its heading there \[rad\]; none: any.
+    /// Heading at the target \[rad\]; `None`: any.
     pub heading: Option<f64>,
-    /// Its walls; none: open water.
+    /// Tank with its walls; `None`: open water.
     pub tank: Option<Tank>,
-    /// No part of it comes nearer to a wall than this \[m\].
+    /// Least distance of any part of the swimmer to a wall \[m\].
     pub margin: f64,
-    /// What the plan is played by.
+    /// Servos that play the plan.
     pub servos: Servos,
 }
 
-/// So many cycles of one member.
+/// Number of cycles of one member.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Step {
-    /// Which member.
+    /// Repeated gait.
     pub member: Member,
-    /// Cycles.
+    /// Number of cycles.
     pub cycles: u32,
-    /// Seconds of a cycle, as it is played.
+    /// Duration of a cycle as it is played \[s\].
     pub period: f64,
 }
 
 impl Step {
-    /// As it is played.
+    /// The repeated gait as it is played.
     fn repeated(&self, family: &Family) -> Repeated<Scaled> {
         Repeated {
             gait: self.member.of(family),
@@ -92,26 +92,26 @@ impl Step {
     }
 }
 
-/// A plan.
+/// Motion plan.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
-    /// In order.
+    /// Steps in order.
     pub steps: Vec<Step>,
-    /// Of the gaits in a mirror.
+    /// Made of the mirrored gaits.
     pub mirrored: bool,
-    /// \[s\], without the ways from and to the straight shape.
+    /// Duration \[s\], without the motion from and to the straight shape.
     pub duration: f64,
-    /// Where the swimmer ends up, the joints straight again.
+    /// End pose, with the joints straight again.
     pub reached: Pose<f64>,
-    /// The way of the joints as the servos take it, from straight to straight.
+    /// Path of the joints as the servos follow it, from straight to straight.
     pub way: Polyline,
-    /// How far that is from the target \[m\], and by what angle \[rad\].
+    /// Distance of the end pose to the target \[m\], and difference of the heading \[rad\].
     pub off: [f64; 2],
-    /// Chains of legs that meet the target, and those of them that the walls leave.
+    /// Number of chains of legs that meet the target, and of those that also stay clear of the walls.
     pub met: [usize; 2],
 }
 
-/// Why there is no plan.
+/// Reason why there is no plan.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PlanError {
     /// The gaits do not join.
@@ -139,12 +139,12 @@ pub enum PlanError {
     /// The robot would not play it.
     #[error("the robot would refuse the {gait} gait of the plan: {reason}")]
     Refused {
-        /// Which gait.
+        /// Name of the gait.
         gait: &'static str,
-        /// The robot's words.
+        /// The robot's reason.
         reason: String,
     },
-    /// It does where it is straight, and not where it is bent as the gaits begin and end.
+    /// The straight swimmer fits, but not the common shape at which the gaits begin and end.
     #[error(
         "{what}, ({:.4}, {:.4}) m, heading {:.1}°, the swimmer has no room to be bent to ({:.1}°, {:.1}°), where these gaits join, \
          nor to the other side: it comes within {margin} m of a wall; gaits that join at the straight shape always \
@@ -161,16 +161,16 @@ pub enum PlanError {
         /// \[m\]
         margin: f64,
     },
-    /// No chain of legs.
+    /// No chain of legs stays clear of the walls.
     #[error(
         "no way found: {met} chains of legs meet the target, {within} of them within walls in the model, and none stays {margin} m \
          from the walls as the servos play it; name a target farther from the walls, another heading, a smaller --margin or a larger \
          --tank"
     )]
     NoWay {
-        /// That meet the target.
+        /// Number of chains that meet the target.
         met: usize,
-        /// Of them those that the walls leave in the model.
+        /// Number of those that stay clear of the walls in the model.
         within: usize,
         /// \[m\]
         margin: f64,
@@ -178,7 +178,7 @@ pub enum PlanError {
 }
 
 impl Family {
-    /// The common shape \[rad\].
+    /// Joint angles of the common shape \[rad\].
     pub fn shape(&self) -> Vector2<f64> {
         swimmer_model::Gait::at(&self.gaits[0].0, 0.0).phi * self.sign()
     }
@@ -211,13 +211,13 @@ impl Family {
         }
     }
 
-    /// What going from the straight shape to the common one brings.
+    /// Net motion from the straight shape to the common one.
     fn way_in(&self, model: &Model<f64>) -> Pose<f64> {
         leads_to(model, &Polyline::new([Vector2::zeros(), self.shape()]))
     }
 }
 
-/// The quickest plan that is found.
+/// Searches for the quickest plan.
 ///
 /// # Errors
 /// [`PlanError`].
@@ -237,66 +237,66 @@ impl Family {
 /// let refused = plan(&model, &Family { gaits, mirrored: false }, &errand).unwrap_err();
 /// assert!(matches!(refused, PlanError::Apart { apart } if (apart - 0.4).abs() < 1e-12));
 /// ```
-pub fn plan(model: &Model<f64>, family: &Family, errand: &Errand) -> Result<Plan, PlanError> {
+pub fn plan(model: &Model<f64>, family: &Family, request: &PlanRequest) -> Result<Plan, PlanError> {
     family.check_joined()?;
-    let room = Room::new(model, errand.tank, errand.margin);
-    has_room(model, &room, family, errand)?;
-    let nets = Nets::new(model, family, &errand.servos).map_err(|error| PlanError::Refused {
+    let walls = Walls::new(model, request.tank, request.margin);
+    check_ends(model, &walls, family, request)?;
+    let nets = Nets::new(model, family, &request.servos).map_err(|error| PlanError::Refused {
         gait: "fastest",
         reason: error.to_string(),
     })?;
-    // Beside a wall the swimmer may have room to bend away from it only.
+    // Next to a wall the swimmer may fit only if it bends away from it.
     let images = [(family.clone(), &nets), (family.mirror(), &nets.mirror())];
-    let mut seen = Seen::default();
+    let mut counts = SearchCounts::default();
     for effort in &EFFORTS {
-        let roomy = Room::new(model, errand.tank, errand.margin + effort.spare);
+        let spared_walls = Walls::new(model, request.tank, request.margin + effort.spare);
         let mut found = None;
         for (family, nets) in &images {
             let swept = SweptAreas::default();
-            let sweeps = Sweeps::new(&roomy, nets, family, &swept);
-            found = quickest(model, errand, &room, &sweeps, effort, found, &mut seen);
+            let sweeps = Sweeps::new(&spared_walls, nets, family, &swept);
+            found = quickest(model, request, &walls, &sweeps, effort, found, &mut counts);
         }
         if let Some(found) = found {
             return Ok(Plan {
-                met: seen.met,
+                met: counts.met,
                 ..found
             });
         }
     }
-    Err(seen.refused.unwrap_or(PlanError::NoWay {
-        met: seen.met[0],
-        within: seen.met[1],
-        margin: errand.margin,
+    Err(counts.refused.unwrap_or(PlanError::NoWay {
+        met: counts.met[0],
+        within: counts.met[1],
+        margin: request.margin,
     }))
 }
 
-/// Whether there is room at the start and, where its heading is given, at the target: straight, and bent to one side at least.
-fn has_room(
+/// Checks that the swimmer fits at the start and, if its heading is given, at the target: straight, and bent to at least one side.
+fn check_ends(
     model: &Model<f64>,
-    room: &Room<'_>,
+    walls: &Walls<'_>,
     family: &Family,
-    errand: &Errand,
+    request: &PlanRequest,
 ) -> Result<(), PlanError> {
-    let to = errand
+    let to = request
         .heading
-        .map(|heading| Pose::new(errand.to.x, errand.to.y, heading));
+        .map(|heading| Pose::new(request.to.x, request.to.y, heading));
     let shape = family.shape();
-    for (what, pose) in [("at the start", Some(errand.from)), ("at the target", to)] {
+    for (what, pose) in [("at the start", Some(request.from)), ("at the target", to)] {
         let Some(pose) = pose else { continue };
-        let told = [pose.x, pose.y, pose.theta];
-        let margin = errand.margin;
-        if !room.fits(&pose, &Vector2::zeros()) {
+        let coordinates = [pose.x, pose.y, pose.theta];
+        let margin = request.margin;
+        if !walls.fits(&pose, &Vector2::zeros()) {
             return Err(PlanError::Outside {
                 what,
-                pose: told,
+                pose: coordinates,
                 margin,
             });
         }
-        let bent = |family: &Family| room.fits(&(pose * family.way_in(model)), &family.shape());
+        let bent = |family: &Family| walls.fits(&(pose * family.way_in(model)), &family.shape());
         if !bent(family) && !bent(&family.mirror()) {
             return Err(PlanError::Bent {
                 what,
-                pose: told,
+                pose: coordinates,
                 shape: shape.into(),
                 margin,
             });
@@ -305,7 +305,7 @@ fn has_room(
     Ok(())
 }
 
-/// How far two poses are apart \[m\], and by what angle \[rad\].
+/// Distance of two poses \[m\], and angle between their headings \[rad\].
 fn distance(one: &Pose<f64>, other: &Pose<f64>) -> [f64; 2] {
     [
         (one.position() - other.position()).norm(),
@@ -314,11 +314,14 @@ fn distance(one: &Pose<f64>, other: &Pose<f64>) -> [f64; 2] {
 }
 
 impl Plan {
-    fn new(errand: &Errand, family: &Family, hit: Hit) -> Self {
-        let heading = errand.heading.unwrap_or(hit.reached.theta);
+    fn new(request: &PlanRequest, family: &Family, hit: Hit) -> Self {
+        let heading = request.heading.unwrap_or(hit.reached.theta);
         Self {
             duration: duration(&hit.steps),
-            off: distance(&hit.reached, &Pose::new(errand.to.x, errand.to.y, heading)),
+            off: distance(
+                &hit.reached,
+                &Pose::new(request.to.x, request.to.y, heading),
+            ),
             reached: hit.reached,
             steps: hit.steps,
             mirrored: family.mirrored,
@@ -337,17 +340,17 @@ impl Plan {
         steps.map(|step| step.member.of(&family)).collect()
     }
 
-    /// What a step is called: `forward`, `backward`, `left`, `right`, `turn-left`, `turn-right`.
+    /// Name of a step: `forward`, `backward`, `left`, `right`, `turn-left`, `turn-right`.
     pub fn word(&self, step: &Step) -> &'static str {
         step.member.word(self.mirrored)
     }
 
-    /// Where another swimmer gets with it.
+    /// End pose of another swimmer that plays this plan.
     pub fn reached_by(&self, model: &Model<f64>, from: &Pose<f64>) -> Pose<f64> {
         *from * leads_to(model, &self.way)
     }
 
-    /// How far a pose is from where the plan leads \[m\], and by what angle \[rad\].
+    /// Distance of a pose to the end pose of the plan \[m\], and difference of the heading \[rad\].
     pub fn apart_from(&self, pose: &Pose<f64>) -> [f64; 2] {
         distance(&self.reached, pose)
     }

@@ -62,7 +62,7 @@ pub struct Meeting {
 }
 
 /// Looks at the body a cycle.
-const LOOKS: usize = 360;
+const SAMPLES: usize = 360;
 /// Cycles that are looked at: a month of 30 s each.
 const MOST_CYCLES: u32 = 90_000;
 
@@ -90,8 +90,8 @@ pub fn until_wall<G: Gait<f64> + ?Sized>(
     tank: &Tank,
     start: &Pose<f64>,
 ) -> Option<Meeting> {
-    let mut cycle: Vec<(f64, Pose<f64>, Vector2<f64>)> = Vec::with_capacity(LOOKS + 1);
-    trajectory(model, gait, &tolerance(), LOOKS, |point| {
+    let mut cycle: Vec<(f64, Pose<f64>, Vector2<f64>)> = Vec::with_capacity(SAMPLES + 1);
+    trajectory(model, gait, &tolerance(), SAMPLES, |point| {
         cycle.push((point.u, point.pose, point.phi));
     });
     let net = cycle.last().map(|(_, pose, _)| *pose)?;
@@ -207,7 +207,7 @@ mod tests {
         let net = swim(&model, &gait, &Tolerance::default()).displacement.x;
         let meeting = until_wall(&model, &gait, &TANK, &Pose::identity()).unwrap();
         let mut foremost: f64 = 0.0;
-        trajectory(&model, &gait, &tolerance(), LOOKS, |point| {
+        trajectory(&model, &gait, &tolerance(), SAMPLES, |point| {
             for corner in model.swimmer().links.outline(&point.phi) {
                 foremost = foremost.max(point.pose.transform(&corner).x);
             }

@@ -3,7 +3,7 @@
 
 use std::sync::OnceLock;
 
-use forecast::{Errand, Family, PlanError, Servos, Tank, plan};
+use forecast::{Family, PlanError, PlanRequest, Servos, Tank, plan};
 use gait_optimizer::{Bounds, SpeedProblem, SteerProblem, steer};
 use nalgebra::{Vector2, Vector3};
 use swimmer_files::{AnyGait, ServoFile};
@@ -112,7 +112,7 @@ fn reached_all(targets: u32, seed: u64) {
     while reached + no_way.len() < targets as usize {
         let to = Vector2::new(random.next() - 0.5, 0.6 * (random.next() - 0.5));
         let heading = std::f64::consts::TAU * (random.next() - 0.5);
-        let errand = Errand {
+        let request = PlanRequest {
             from: Pose::identity(),
             to,
             heading: Some(heading),
@@ -120,10 +120,10 @@ fn reached_all(targets: u32, seed: u64) {
             margin: MARGIN,
             servos: servos(),
         };
-        let found = match plan(model, bent, &errand) {
+        let found = match plan(model, bent, &request) {
             Err(PlanError::Bent { .. } | PlanError::NoWay { .. }) => {
                 unbent += 1;
-                plan(model, straight, &errand)
+                plan(model, straight, &request)
             }
             found => found,
         };
@@ -148,7 +148,7 @@ fn reached_all(targets: u32, seed: u64) {
             let mut other = *model.swimmer();
             other.chi *= share;
             let other = Model::new(&other).unwrap();
-            let there = found.reached_by(&other, &errand.from);
+            let there = found.reached_by(&other, &request.from);
             let (sin, cos) = (there.theta - found.reached.theta).sin_cos();
             off_by_chi[0] = off_by_chi[0].max((there.position() - found.reached.position()).norm());
             off_by_chi[1] = off_by_chi[1].max(sin.atan2(cos).abs());
@@ -169,7 +169,7 @@ fn reached_all(targets: u32, seed: u64) {
 #[track_caller]
 fn reached_straight(to: [f64; 2], heading: f64) {
     let (model, [bent, straight]) = robot();
-    let errand = Errand {
+    let request = PlanRequest {
         from: Pose::identity(),
         to: to.into(),
         heading: Some(heading),
@@ -177,11 +177,11 @@ fn reached_straight(to: [f64; 2], heading: f64) {
         margin: MARGIN,
         servos: servos(),
     };
-    let error = plan(model, bent, &errand).unwrap_err();
+    let error = plan(model, bent, &request).unwrap_err();
     assert!(matches!(error, PlanError::Bent { .. }), "{error}");
-    let found = plan(model, straight, &errand).unwrap();
+    let found = plan(model, straight, &request).unwrap();
     let pose = swum(model, Vector3::zeros(), found.way.vertices());
-    assert!((Vector2::new(pose.x, pose.y) - errand.to).norm() < 5e-4);
+    assert!((Vector2::new(pose.x, pose.y) - request.to).norm() < 5e-4);
     assert!((pose.z - heading).abs() < 5e-3);
 }
 
@@ -202,7 +202,7 @@ fn a_target_at_a_wall_is_reached_by_many_small_cycles() {
 fn a_target_at_a_wall_is_reached_by_slightly_other_gaits() {
     let (model, _) = robot();
     let ([x, y], heading) = AT_A_WALL;
-    let errand = Errand {
+    let request = PlanRequest {
         from: Pose::identity(),
         to: Vector2::new(x, y),
         heading: Some(heading),
@@ -210,16 +210,16 @@ fn a_target_at_a_wall_is_reached_by_slightly_other_gaits() {
         margin: MARGIN,
         servos: servos(),
     };
-    let found = plan(model, &joined_at([0.0; 2], CLEARANCE + 6e-5), &errand).unwrap();
+    let found = plan(model, &joined_at([0.0; 2], CLEARANCE + 6e-5), &request).unwrap();
     let pose = swum(model, Vector3::zeros(), found.way.vertices());
-    assert!((Vector2::new(pose.x, pose.y) - errand.to).norm() < 5e-4);
+    assert!((Vector2::new(pose.x, pose.y) - request.to).norm() < 5e-4);
     assert!((pose.z - heading).abs() < 5e-3);
 }
 
 #[test]
 fn a_target_outside_is_refused() {
     let (model, [family, _]) = robot();
-    let errand = Errand {
+    let request = PlanRequest {
         from: Pose::identity(),
         to: Vector2::new(0.6, 0.0),
         heading: None,
@@ -227,7 +227,7 @@ fn a_target_outside_is_refused() {
         margin: MARGIN,
         servos: servos(),
     };
-    let error = plan(model, family, &errand).unwrap_err();
+    let error = plan(model, family, &request).unwrap_err();
     assert!(
         matches!(error, PlanError::NoWay { .. } | PlanError::Outside { .. }),
         "{error}"

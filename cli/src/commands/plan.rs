@@ -5,7 +5,7 @@ mod playlist;
 
 use std::path::{Path, PathBuf};
 
-use forecast::{Errand, Family, PlanError, Servos, Tank, plan};
+use forecast::{Family, PlanError, PlanRequest, Servos, Tank, plan};
 use swimmer_files::{AnyGait, GaitFile, SwimmerFile};
 use swimmer_model::{Gait as _, Link, Pose};
 
@@ -104,7 +104,7 @@ impl Plan {
             )));
         }
         let mut family = self.family(&file)?;
-        let errand = Errand {
+        let request = PlanRequest {
             from: Pose::new(self.from.x, self.from.y, self.from.heading.unwrap_or(0.0)),
             to: nalgebra::Vector2::new(self.to.x, self.to.y),
             heading: self.to.heading,
@@ -112,14 +112,14 @@ impl Plan {
             margin: self.margin,
             servos: Servos::on_the_robot(file.servo.unwrap_or_default()),
         };
-        let mut found = plan(&model, &family, &errand);
+        let mut found = plan(&model, &family, &request);
         let no_room = matches!(found, Err(PlanError::Bent { .. } | PlanError::NoWay { .. }));
         if no_room && self.gaits.is_none() && self.steer.shape.is_none() {
             // Beside a wall the straight swimmer may fit where the bent one does not.
             let mut straight = self.steer.clone();
             straight.shape = Some([0.0; 2]);
             family = joined(&straight, &file)?;
-            found = plan(&model, &family, &errand);
+            found = plan(&model, &family, &request);
         }
         let found = found.map_err(|error| Failure::tried(&error))?;
         let off = |share: f64| -> Outcome<[f64; 2]> {
@@ -130,7 +130,7 @@ impl Plan {
                 .side_chi
                 .map(|both| both.map(|chi| chi * share));
             let model = crate::arguments::model(&other)?;
-            let reached = found.reached_by(&model, &errand.from);
+            let reached = found.reached_by(&model, &request.from);
             Ok(found.apart_from(&reached))
         };
         // χ has no effect in a perfect fluid.

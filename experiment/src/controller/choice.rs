@@ -69,12 +69,12 @@ impl Controller {
             // A leg would be smaller than the smallest cycle.
             return self.nearest(here, &to).ok_or(Ending::NoWay);
         };
-        let has_room = |step: &Step| self.planner.has_room(here, &step.member, 0.0);
+        let stays_clear = |step: &Step| self.planner.stays_clear(here, &step.member, 0.0);
         // Legs that are put off come last.
         let first = chain
             .iter()
-            .position(|step| !self.is_put_off(step) && has_room(step))
-            .or_else(|| chain.iter().position(has_room));
+            .position(|step| !self.is_put_off(step) && stays_clear(step))
+            .or_else(|| chain.iter().position(stays_clear));
         let first = first.ok_or(Ending::NoWay)?;
         let step = &mut chain[first];
         let member = step.member;
@@ -158,7 +158,7 @@ impl Controller {
             })
         });
         let leads = members
-            .filter(|member| self.planner.has_room(here, member, 0.0))
+            .filter(|member| self.planner.stays_clear(here, member, 0.0))
             .map(|member| (miss(&(*here * self.planner.net(&member))), member));
         let (least, member) = leads.min_by(|a, b| a.0.total_cmp(&b.0))?;
         (least < miss(here)).then_some(member)
@@ -200,8 +200,10 @@ impl Controller {
         if self.cycles >= self.options.most_cycles {
             return Err(Ending::TooManyCycles(self.cycles));
         }
-        let has_room = self.planner.has_room(here, &member, self.options.spare_m);
-        if has_room {
+        let stays_clear = self
+            .planner
+            .stays_clear(here, &member, self.options.spare_m);
+        if stays_clear {
             Ok(member)
         } else {
             Err(Ending::NoWay)

@@ -1,29 +1,29 @@
-//! Aiming: a chain of legs, as the robot plays it, to its target.
+//! Aim correction: shifts the target of a chain of legs until the chain, as the robot plays it, ends at the true target.
 
 use swimmer_model::{Model, Pose};
 
 use super::legs::settled;
 use super::member::Nets;
-use super::{Errand, Family, PlanError, Step, distance};
+use super::{Family, PlanError, PlanRequest, Step, distance};
 use crate::path::Polyline;
 use crate::playlist::{PlaylistTable, leads_to, played, refused, tables};
 
-/// Shots at a target.
+/// Largest number of corrections.
 const SHOTS: usize = 12;
-/// A target is hit so closely that aiming better is not worth it \[m, rad\]: the table's units leave as much open.
+/// Miss at which the correction ends \[m, rad\]: the resolution of the table is no better.
 const GOOD: [f64; 2] = [2e-5, 2e-4];
-/// The best shot counts where it comes this near \[m, rad\].
+/// Largest miss of an accepted chain \[m, rad\].
 const ACCEPTED: [f64; 2] = [5e-4, 5e-3];
 
 pub(super) struct Aim<'a> {
     pub(super) model: &'a Model<f64>,
     pub(super) family: &'a Family,
-    pub(super) errand: &'a Errand,
+    pub(super) request: &'a PlanRequest,
     pub(super) nets: &'a Nets,
     pub(super) way_in: Pose<f64>,
 }
 
-/// A chain that is to be aimed: by its legs alone. Many small cycles of the ways beside walls would magnify every correction.
+/// Chain to be corrected, by its legs alone: the many small cycles of an approach along a wall would magnify every correction.
 pub(super) struct Chain<'a> {
     pub(super) out: &'a [Step],
     pub(super) legs: Vec<Step>,
@@ -36,7 +36,7 @@ impl Chain<'_> {
     }
 }
 
-/// A chain that gets there.
+/// Chain that meets its target when played.
 pub(super) struct Hit {
     pub(super) steps: Vec<Step>,
     pub(super) reached: Pose<f64>,
@@ -45,7 +45,7 @@ pub(super) struct Hit {
 }
 
 impl Aim<'_> {
-    /// A chain, played, and aimed until it hits; none where it does not. `begun`: the pose at the common shape.
+    /// Plays a chain and corrects its aim. Returns `None` if it does not meet the target. `begun`: pose at the common shape.
     pub(super) fn hit(
         &self,
         begun: &Pose<f64>,
@@ -56,9 +56,9 @@ impl Aim<'_> {
         // Where any heading will do, the one that the chain was made for.
         let heading = (*begun * out * legs * back * self.way_in.inverse()).theta;
         let target = Pose::new(
-            self.errand.to.x,
-            self.errand.to.y,
-            self.errand.heading.unwrap_or(heading),
+            self.request.to.x,
+            self.request.to.y,
+            self.request.heading.unwrap_or(heading),
         );
         let mut aimed_at = target;
         let mut best: Option<Hit> = None;
@@ -94,8 +94,8 @@ impl Aim<'_> {
 
     fn play(&self, target: &Pose<f64>, steps: Vec<Step>) -> Result<Hit, PlanError> {
         let tables = self.tables(&steps)?;
-        let way = played(&tables, &self.errand.servos);
-        let reached = self.errand.from * leads_to(self.model, &way);
+        let way = played(&tables, &self.request.servos);
+        let reached = self.request.from * leads_to(self.model, &way);
         Ok(Hit {
             steps,
             off: distance(&reached, target),
@@ -119,7 +119,7 @@ impl Aim<'_> {
             reason: error.to_string(),
         })?;
         let links = &self.model.swimmer().links;
-        match refused(&tables, &self.errand.servos, links) {
+        match refused(&tables, &self.request.servos, links) {
             Some((step, reason)) => Err(PlanError::Refused {
                 gait: word(step),
                 reason,

@@ -7,8 +7,8 @@ use swimmer_model::{Model, Pose};
 
 use super::legs::{LARGEST, settled};
 use super::member::Nets;
-use super::room::{Room, Sweeps, SweptAreas};
-use super::search::{Seen, legs_between};
+use super::search::{SearchCounts, legs_between};
+use super::walls::{Sweeps, SweptAreas, Walls};
 use super::way_out::ways_out;
 use super::{Family, Member, PlanError, Scaled, Step, duration};
 use crate::losses::Servos;
@@ -147,14 +147,14 @@ impl Planner {
 
     /// Returns `true` if the straight swimmer stays clear of the walls by the margin and `spare` \[m\] more.
     pub fn fits(&self, pose: &Pose<f64>, spare: f64) -> bool {
-        let room = Room::new(&self.model, self.tank, self.margin + spare);
-        room.fits(pose, &nalgebra::Vector2::zeros())
+        let walls = Walls::new(&self.model, self.tank, self.margin + spare);
+        walls.fits(pose, &nalgebra::Vector2::zeros())
     }
 
     /// Returns `true` if one cycle of a member from this pose stays clear of the walls by the margin and `spare` \[m\] more.
-    pub fn has_room(&self, from: &Pose<f64>, member: &Member, spare: f64) -> bool {
-        let room = Room::new(&self.model, self.tank, self.margin + spare);
-        let sweeps = Sweeps::new(&room, &self.nets, &self.family, &self.swept);
+    pub fn stays_clear(&self, from: &Pose<f64>, member: &Member, spare: f64) -> bool {
+        let walls = Walls::new(&self.model, self.tank, self.margin + spare);
+        let sweeps = Sweeps::new(&walls, &self.nets, &self.family, &self.swept);
         sweeps.after(&(*from * self.way_in), member, 1).is_some()
     }
 
@@ -171,8 +171,8 @@ impl Planner {
             let cycles: u32 = steps.iter().map(|step| step.cycles).sum();
             duration(steps) + pause * f64::from(cycles)
         };
-        let room = Room::new(&self.model, self.tank, self.margin + spare);
-        let sweeps = Sweeps::new(&room, &self.nets, &self.family, &self.swept);
+        let walls = Walls::new(&self.model, self.tank, self.margin + spare);
+        let sweeps = Sweeps::new(&walls, &self.nets, &self.family, &self.swept);
         let [from, to] = [from, to].map(|pose| *pose * self.way_in);
         let outward = ways_out(&sweeps, &from, false);
         let inward = ways_out(&sweeps, &to, false);
@@ -191,7 +191,7 @@ impl Planner {
             if best.as_ref().is_some_and(|best| seconds(best) < least) {
                 break;
             }
-            let legs = legs_between(&sweeps, &out.there, &wanted, &mut Seen::default());
+            let legs = legs_between(&sweeps, &out.there, &wanted, &mut SearchCounts::default());
             let quickest = |a: &Vec<Step>, b: &Vec<Step>| seconds(a).total_cmp(&seconds(b));
             let Some(legs) = legs.into_iter().min_by(quickest) else {
                 continue;
@@ -217,8 +217,8 @@ impl Planner {
         steps: &[Step],
         spare: f64,
     ) -> Option<Vec<Step>> {
-        let room = Room::new(&self.model, self.tank, self.margin + spare);
-        let sweeps = Sweeps::new(&room, &self.nets, &self.family, &self.swept);
+        let walls = Walls::new(&self.model, self.tank, self.margin + spare);
+        let sweeps = Sweeps::new(&walls, &self.nets, &self.family, &self.swept);
         let [from, to] = [from, to].map(|pose| *pose * self.way_in);
         let steps = settled(&self.nets, &(from.inverse() * to), steps, LARGEST)?;
         steps.iter().try_fold(from, |pose, step| {

@@ -4,9 +4,9 @@ use swimmer_model::{Model, Pose};
 
 use super::aim::{Aim, Chain};
 use super::legs::{LARGEST, chains, settled, with_cycles};
-use super::room::{Room, Sweeps};
+use super::walls::{Sweeps, Walls};
 use super::way_out::{Way, ways_out};
-use super::{Errand, Plan, PlanError, Step, duration};
+use super::{Plan, PlanError, PlanRequest, Step, duration};
 
 /// Factors by which a leg is divided into smaller cycles if its cycles do not fit between the walls.
 const SMALLER: [u32; 5] = [1, 2, 4, 8, 16];
@@ -50,7 +50,7 @@ pub(super) const EFFORTS: [Effort; 3] = {
 
 /// Counts of a search, for its error message.
 #[derive(Debug, Default)]
-pub(super) struct Seen {
+pub(super) struct SearchCounts {
     /// Chains of legs that meet the target, and those of them that stay clear of the walls.
     pub(super) met: [usize; 2],
     /// Reason why the robot refuses the first refused chain.
@@ -70,27 +70,27 @@ struct Pair<'a> {
 /// The quickest plan with these gaits, or the known plan if none is quicker.
 pub(super) fn quickest(
     model: &Model<f64>,
-    errand: &Errand,
-    room: &Room<'_>,
+    request: &PlanRequest,
+    walls: &Walls<'_>,
     sweeps: &Sweeps<'_>,
     effort: &Effort,
     known: Option<Plan>,
-    seen: &mut Seen,
+    counts: &mut SearchCounts,
 ) -> Option<Plan> {
     let (family, nets) = (sweeps.family, sweeps.nets);
     let way_in = family.way_in(model);
-    let begun = errand.from * way_in;
+    let begun = request.from * way_in;
     let aim = Aim {
         model,
         family,
-        errand,
+        request,
         nets,
         way_in,
     };
     let outward = ways_out(sweeps, &begun, effort.everywhere);
-    let inward = ends(errand).into_iter().filter(|end| {
-        let fits = |pose: &Pose<f64>| room.fits(pose, &nalgebra::Vector2::zeros());
-        fits(end) && room.fits(&(*end * way_in), &family.shape())
+    let inward = ends(request).into_iter().filter(|end| {
+        let fits = |pose: &Pose<f64>| walls.fits(pose, &nalgebra::Vector2::zeros());
+        fits(end) && walls.fits(&(*end * way_in), &family.shape())
     });
     let inward: Vec<Way> = inward
         .flat_map(|end| ways_out(sweeps, &(end * way_in), effort.everywhere))
@@ -125,7 +125,7 @@ pub(super) fn quickest(
         if least > most {
             break;
         }
-        let mut left = legs_between(sweeps, &outward.there, &wanted, seen);
+        let mut left = legs_between(sweeps, &outward.there, &wanted, counts);
         left.retain(|legs| ways + duration(legs) < most);
         for legs in left.iter().take(effort.aimed) {
             let chain = Chain {
@@ -137,12 +137,12 @@ pub(super) fn quickest(
                 Ok(Some(hit)) => hit,
                 Ok(None) => continue,
                 Err(error) => {
-                    seen.refused.get_or_insert(error);
+                    counts.refused.get_or_insert(error);
                     continue;
                 }
             };
-            if room.leaves_played(&errand.from, &hit.way) {
-                best = Some(Plan::new(errand, family, hit));
+            if walls.leaves_played(&request.from, &hit.way) {
+                best = Some(Plan::new(request, family, hit));
                 break;
             }
         }
@@ -155,26 +155,26 @@ pub(super) fn legs_between(
     sweeps: &Sweeps<'_>,
     begun: &Pose<f64>,
     wanted: &Pose<f64>,
-    seen: &mut Seen,
+    counts: &mut SearchCounts,
 ) -> Vec<Vec<Step>> {
     let all = chains(sweeps.nets, wanted);
-    seen.met[0] += all.len();
+    counts.met[0] += all.len();
     let fitted = all
         .iter()
         .filter_map(|legs| fitted(sweeps, begun, wanted, legs));
     let mut within: Vec<_> = fitted.collect();
-    seen.met[1] += within.len();
+    counts.met[1] += within.len();
     within.sort_by(|a, b| duration(a).total_cmp(&duration(b)));
     within
 }
 
 /// Poses in which the plan may end.
-pub(super) fn ends(errand: &Errand) -> Vec<Pose<f64>> {
+pub(super) fn ends(request: &PlanRequest) -> Vec<Pose<f64>> {
     let any = (0..HEADINGS).map(|k| std::f64::consts::TAU * k as f64 / HEADINGS as f64);
-    let headings = errand
+    let headings = request
         .heading
         .map_or_else(|| any.collect(), |one| vec![one]);
-    let end = |heading| Pose::new(errand.to.x, errand.to.y, heading);
+    let end = |heading| Pose::new(request.to.x, request.to.y, heading);
     headings.into_iter().map(end).collect()
 }
 

@@ -13,18 +13,18 @@ use crate::path::Polyline;
 use crate::tank::{Tank, meets_wall, touching};
 
 /// Samples of the body per cycle.
-const LOOKS: usize = 72;
+const SAMPLES: usize = 72;
 /// Ratio of successive cycle sizes at which the swept area is computed.
 const RATIO: f64 = 0.9;
 
 /// The walls, and the swimmer between them.
-pub(super) struct Room<'a> {
+pub(super) struct Walls<'a> {
     model: &'a Model<f64>,
     /// The tank without its margin. `None` if there are no walls.
     tank: Option<Tank>,
 }
 
-impl<'a> Room<'a> {
+impl<'a> Walls<'a> {
     pub(super) fn new(model: &'a Model<f64>, tank: Option<Tank>, margin: f64) -> Self {
         let tank = tank.map(|tank| Tank {
             length: tank.length - 2.0 * margin,
@@ -62,7 +62,7 @@ impl<'a> Room<'a> {
 
 /// Areas swept by the cycles of a family.
 pub(super) struct Sweeps<'a> {
-    pub(super) room: &'a Room<'a>,
+    pub(super) walls: &'a Walls<'a>,
     pub(super) nets: &'a Nets,
     pub(super) family: &'a Family,
     swept: &'a SweptAreas,
@@ -90,7 +90,7 @@ struct Swept {
 impl Swept {
     fn new(model: &Model<f64>, family: &Family, member: &Member) -> Self {
         let (mut links, mut sphere) = (Vec::new(), Vec::new());
-        trajectory(model, &member.of(family), &tolerance(), LOOKS, |point| {
+        trajectory(model, &member.of(family), &tolerance(), SAMPLES, |point| {
             let outline = model.swimmer().links.outline(&point.phi);
             links.extend(outline.map(|end| point.pose.transform(&end)));
             sphere.push(point.pose.position());
@@ -104,13 +104,13 @@ impl Swept {
 
 impl<'a> Sweeps<'a> {
     pub(super) fn new(
-        room: &'a Room<'a>,
+        walls: &'a Walls<'a>,
         nets: &'a Nets,
         family: &'a Family,
         swept: &'a SweptAreas,
     ) -> Self {
         Self {
-            room,
+            walls,
             nets,
             family,
             swept,
@@ -136,7 +136,7 @@ impl<'a> Sweeps<'a> {
             } else {
                 LARGEST * RATIO.powi(power)
             };
-            Swept::new(self.room.model, self.family, &member.kind.of_scale(scale))
+            Swept::new(self.walls.model, self.family, &member.kind.of_scale(scale))
         });
         let net = self.nets.of(member);
         let mut pose = *pose;
@@ -144,7 +144,7 @@ impl<'a> Sweeps<'a> {
             let next = pose * net;
             // Backwards it sweeps the area that it sweeps forwards from its end.
             let start = if member.backwards { &next } else { &pose };
-            if !self.room.holds(start, &swept.links, &swept.sphere) {
+            if !self.walls.holds(start, &swept.links, &swept.sphere) {
                 return None;
             }
             pose = next;

@@ -11,7 +11,7 @@ use swimmer_model::Pose;
 use super::Step;
 use super::legs::LARGEST;
 use super::member::{Kind, Member};
-use super::room::{Sweeps, sizes};
+use super::walls::{Sweeps, sizes};
 
 /// Poses within these distances count as equal \[m, rad\].
 const ALIKE: [f64; 2] = [0.005, 0.05];
@@ -49,15 +49,15 @@ pub(super) fn ways_out(sweeps: &Sweeps<'_>, begun: &Pose<f64>, everywhere: bool)
         duration: 0.0,
     }];
     let mut open = BinaryHeap::from([Reverse((Time(0.0), 0))]);
-    let mut seen = HashSet::new();
+    let mut visited = HashSet::new();
     let mut ways = Vec::new();
     let mut told = HashSet::new();
     while let Some(Reverse((Time(time), at))) = open.pop() {
         let pose = nodes[at].pose;
-        if !seen.insert(cell(&pose, ALIKE)) {
+        if !visited.insert(cell(&pose, ALIKE)) {
             continue;
         }
-        let mut room = 0.0;
+        let mut free_scales = 0.0;
         for kind in Kind::ALL {
             for backwards in [false, true] {
                 let of = |scale| Member {
@@ -72,12 +72,12 @@ pub(super) fn ways_out(sweeps: &Sweeps<'_>, begun: &Pose<f64>, everywhere: bool)
                 let Some((member, mut there)) = fitting else {
                     continue;
                 };
-                room += member.scale;
+                free_scales += member.scale;
                 let mut cycles = 1;
                 loop {
                     let step = sweeps.nets.step(member, cycles);
                     let duration = time + f64::from(cycles) * step.period;
-                    if !seen.contains(&cell(&there, ALIKE)) {
+                    if !visited.contains(&cell(&there, ALIKE)) {
                         open.push(Reverse((Time(duration), nodes.len())));
                         nodes.push(Node {
                             pose: there,
@@ -101,8 +101,8 @@ pub(super) fn ways_out(sweeps: &Sweeps<'_>, begun: &Pose<f64>, everywhere: bool)
         if told.insert(cell(&pose, APART)) {
             ways.push(way(&nodes, at));
         }
-        let free = at == 0 && !everywhere && room > 5.99 * LARGEST;
-        if free || seen.len() > MOST || ways.len() == WAYS {
+        let free = at == 0 && !everywhere && free_scales > 5.99 * LARGEST;
+        if free || visited.len() > MOST || ways.len() == WAYS {
             break;
         }
     }

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use forecast::path::Polyline;
 use forecast::playlist::{Repeated, leads_to, tables};
-use forecast::{Errand, Family, PlanError, PlaylistTable, Servos, Tank, plan};
+use forecast::{Family, PlanError, PlanRequest, PlaylistTable, Servos, Tank, plan};
 use gait_optimizer::{Bounds, SpeedProblem, SteerProblem, steer};
 use gait_player::GaitTable;
 use host_link::port::{Device, VirtualPort};
@@ -101,19 +101,19 @@ fn joined_at(shape: [f64; 2]) -> Family {
 fn planned<'a>(
     model: &Model<f64>,
     [bent, straight]: &'a [Family; 2],
-    errand: &Errand,
+    request: &PlanRequest,
 ) -> Result<(&'a Family, forecast::Plan), PlanError> {
-    match plan(model, bent, errand) {
+    match plan(model, bent, request) {
         Ok(found) => Ok((bent, found)),
         Err(PlanError::Bent { .. } | PlanError::NoWay { .. }) => {
-            plan(model, straight, errand).map(|found| (straight, found))
+            plan(model, straight, request).map(|found| (straight, found))
         }
         Err(error) => Err(error),
     }
 }
 
-fn errand(to: Vector2<f64>, heading: f64) -> Errand {
-    Errand {
+fn request(to: Vector2<f64>, heading: f64) -> PlanRequest {
+    PlanRequest {
         from: Pose::identity(),
         to,
         heading: Some(heading),
@@ -277,7 +277,7 @@ fn reached_all(targets: usize, seed: u64) {
             refused += 1;
             continue;
         }
-        let (family, found) = match planned(model, families, &errand(to, heading)) {
+        let (family, found) = match planned(model, families, &request(to, heading)) {
             Ok(found) => found,
             Err(PlanError::Outside { .. }) => {
                 refused += 1;
@@ -342,7 +342,7 @@ fn reached_all(targets: usize, seed: u64) {
 #[test]
 fn a_bad_link_changes_nothing() {
     let (model, [family, _]) = robot();
-    let found = plan(model, family, &errand(Vector2::new(0.2, 0.1), 1.5)).unwrap();
+    let found = plan(model, family, &request(Vector2::new(0.2, 0.1), 1.5)).unwrap();
     let tables = tables_of(family, &found);
     let (clean, _) = swum_by(*model.swimmer(), &tables, 3);
     let faults = "drop=2%,flip=0.2%,delay=20";
