@@ -9,7 +9,7 @@
 
 use std::cell::RefCell;
 
-use crate::calls::{Answer, Lab, call};
+use crate::calls::{CallOutput, Lab, call};
 
 /// State of the module. A page calls from one thread.
 #[derive(Default)]
@@ -44,8 +44,8 @@ pub extern "C" fn lab_call(name: usize, bytes: usize) -> usize {
         let name_and_bytes = door.input.get(..name.saturating_add(bytes));
         let (name, bytes) = name_and_bytes.map_or((&[][..], &[][..]), |all| all.split_at(name));
         (door.kind, door.output) = match call(&mut door.lab, name, bytes) {
-            Ok(Answer::Json(text)) => (0, text.into_bytes()),
-            Ok(Answer::Bytes(bytes)) => (1, bytes),
+            Ok(CallOutput::Json(text)) => (0, text.into_bytes()),
+            Ok(CallOutput::Bytes(bytes)) => (1, bytes),
             Err(reason) => (2, reason.into_bytes()),
         };
         door.output.len()

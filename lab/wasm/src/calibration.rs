@@ -2,8 +2,8 @@
 //! campaign is fitted in separate steps, because each takes long: fit, evidence, assessment, advice on the next measurement, and
 //! additional parameters.
 
-mod answers;
 mod data;
+mod outputs;
 
 use calibrate::{
     Assessment, CampaignFit, Evidence, EvidenceOptions, FitOptions, NuisanceParameter,
@@ -13,8 +13,8 @@ use serde::Deserialize;
 use swimmer_files::Campaign;
 
 use crate::calls::{Call, Lab, Outcome, json, parsed};
-use answers::{EvidenceAnswer, FitAnswer, FurtherAnswer};
 use data::Dropped;
+use outputs::{EvidenceOutput, FitOutput, NuisanceOutput};
 
 /// Calls by name.
 pub(crate) const CALLS: &[(&str, Call)] = &[
@@ -55,13 +55,13 @@ fn fit(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let data = dropped.data(&campaign)?;
     let found = calibrate_campaign(&campaign, &data, FitOptions::default())
         .map_err(|why| why.to_string())?;
-    let answer = FitAnswer::new(&found, &campaign, &data);
+    let output = FitOutput::new(&found, &campaign, &data);
     let number = lab.kept.keep(Fitted {
         campaign,
         found,
         evidence: None,
     });
-    json(&answer.numbered(number))
+    json(&output.numbered(number))
 }
 
 /// Likelihood, profiles, ridge and curves of a fit.
@@ -73,7 +73,7 @@ fn evidence(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let runs = fitted.found.runs.iter();
     let names: Vec<String> = runs.map(|run| run.file.display().to_string()).collect();
     let weighed = fitted.evidence.insert(weighed);
-    json(&EvidenceAnswer::new(weighed, &names))
+    json(&EvidenceOutput::new(weighed, &names))
 }
 
 /// Assessment of a fit.
@@ -87,14 +87,14 @@ fn assessment(lab: &mut Lab, bytes: &[u8]) -> Outcome {
 
 /// Number of a fit, and the words of `--fit-also`.
 #[derive(Deserialize)]
-struct Asked {
+struct FitAlsoRequest {
     number: u32,
     also: Vec<String>,
 }
 
 /// Fits parameters in addition to `r_s` and χ.
 fn further(lab: &mut Lab, bytes: &[u8]) -> Outcome {
-    let Asked { number, also } = parsed(bytes)?;
+    let FitAlsoRequest { number, also } = parsed(bytes)?;
     let fitted: &mut Fitted = lab.kept.get(number)?;
     let of_word = |word: &String| {
         NuisanceParameter::of_word(word)
@@ -102,7 +102,7 @@ fn further(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     };
     let wanted = also.iter().map(of_word).collect::<Result<Vec<_>, _>>()?;
     let fit = fit_further(&fitted.found, &wanted).map_err(|why| why.to_string())?;
-    json(&FurtherAnswer::new(&fit))
+    json(&NuisanceOutput::new(&fit))
 }
 
 /// Advice on the next measurement.

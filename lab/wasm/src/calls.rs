@@ -18,7 +18,7 @@ use crate::explore;
 
 /// Output of a call.
 #[derive(Debug, PartialEq)]
-pub enum Answer {
+pub enum CallOutput {
     /// JSON document.
     Json(String),
     /// Numbers (little-endian) or a file, depending on the call.
@@ -26,7 +26,7 @@ pub enum Answer {
 }
 
 /// Output, or an error message of one sentence for the user.
-pub type Outcome = Result<Answer, String>;
+pub type Outcome = Result<CallOutput, String>;
 
 /// Call: takes the state and the bytes that the page wrote (JSON unless the call documents another format).
 pub type Call = fn(&mut Lab, &[u8]) -> Outcome;
@@ -81,9 +81,9 @@ pub fn parsed<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, String> {
 ///
 /// # Errors
 /// A key is not a string.
-pub fn json<T: Serialize>(answer: &T) -> Outcome {
-    serde_json::to_string(answer)
-        .map(Answer::Json)
+pub fn json<T: Serialize>(output: &T) -> Outcome {
+    serde_json::to_string(output)
+        .map(CallOutput::Json)
         .map_err(|why| format!("writing the answer: {why}"))
 }
 
@@ -92,7 +92,7 @@ pub fn json<T: Serialize>(answer: &T) -> Outcome {
 /// # Errors
 /// Never fails; the type is that of a call.
 pub fn numbers(values: impl IntoIterator<Item = f64>) -> Outcome {
-    Ok(Answer::Bytes(
+    Ok(CallOutput::Bytes(
         values.into_iter().flat_map(f64::to_le_bytes).collect(),
     ))
 }

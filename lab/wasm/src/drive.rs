@@ -3,12 +3,12 @@
 //! A session has no port here: the page transports its bytes over Web Serial, over a WebSocket, or to the twin in the page. The
 //! binary arguments of a call begin with the number of the object and the page's time, `[u32][f64 s]`, little-endian.
 
+mod events;
 mod host;
 mod memory_port;
 mod overheard;
 mod preflight;
 mod robot;
-mod told;
 
 use std::time::Duration;
 

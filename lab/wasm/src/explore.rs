@@ -29,14 +29,14 @@ pub(crate) const CALLS: &[(&str, Call)] = &[
 
 #[cfg(test)]
 mod tests {
-    use crate::calls::{Answer, Lab, call};
+    use crate::calls::{CallOutput, Lab, call};
     use serde_json::{Value, json};
 
-    fn asked(lab: &mut Lab, name: &str, question: &Value) -> Value {
-        let answer = call(lab, name.as_bytes(), question.to_string().as_bytes()).unwrap();
-        match answer {
-            Answer::Json(text) => serde_json::from_str(&text).unwrap(),
-            Answer::Bytes(bytes) => match String::from_utf8(bytes.clone()) {
+    fn output_of(lab: &mut Lab, name: &str, question: &Value) -> Value {
+        let output = call(lab, name.as_bytes(), question.to_string().as_bytes()).unwrap();
+        match output {
+            CallOutput::Json(text) => serde_json::from_str(&text).unwrap(),
+            CallOutput::Bytes(bytes) => match String::from_utf8(bytes.clone()) {
                 Ok(text) if text.starts_with('#') => Value::from(text),
                 _ => Value::from(
                     bytes
@@ -53,7 +53,7 @@ mod tests {
     fn an_optimum_swims_what_it_promises_and_holds_its_conditions() {
         let mut lab = Lab::default();
         let swimmer = "purcell";
-        let found = asked(
+        let found = output_of(
             &mut lab,
             "optimize",
             &json!({ "swimmer": swimmer, "what": "displacement" }),
@@ -61,20 +61,20 @@ mod tests {
         let x = found["displacement_over_length"].as_f64().unwrap();
         assert!((x - 0.103_532_24).abs() < 1e-9, "{x}");
         let gait = &found["gait"];
-        let swum = asked(
+        let swum = output_of(
             &mut lab,
             "simulate",
             &json!({ "swimmer": swimmer, "gait": gait }),
         );
         let again = swum["displacement_over_length"].as_f64().unwrap();
         assert!((x - again).abs() < 1e-8, "{x} {again}");
-        let held = asked(
+        let held = output_of(
             &mut lab,
             "certify",
             &json!({ "swimmer": swimmer, "gait": gait }),
         );
         assert_eq!(held["verdict"], "pass");
-        let file = asked(
+        let file = output_of(
             &mut lab,
             "gait-file",
             &json!({ "swimmer": swimmer, "gait": gait }),
@@ -90,9 +90,9 @@ mod tests {
             .flat_map(|s| [1.2 * (s + 0.7).cos(), 1.1 * (s + 0.7).sin()])
             .collect();
         let samples = json!({ "swimmer": "robot", "gait": phi, "objective": "displacement" });
-        let swum = asked(&mut lab, "simulate", &samples);
-        let file = asked(&mut lab, "gait-file", &samples);
-        let of_file = asked(
+        let swum = output_of(&mut lab, "simulate", &samples);
+        let file = output_of(&mut lab, "gait-file", &samples);
+        let of_file = output_of(
             &mut lab,
             "simulate",
             &json!({ "swimmer": "robot", "gait": file }),
@@ -104,8 +104,8 @@ mod tests {
     fn a_grid_has_the_height_of_the_map_in_its_middle() {
         let mut lab = Lab::default();
         let question = json!({ "swimmer": "purcell", "row": "x", "max_angle": 2.8, "count": 5 });
-        let map = asked(&mut lab, "height-map", &question);
-        let grid = asked(&mut lab, "height-grid", &question);
+        let map = output_of(&mut lab, "height-map", &question);
+        let grid = output_of(&mut lab, "height-grid", &question);
         assert_eq!(grid.as_array().unwrap().len(), 25);
         assert_eq!(grid[12], map["at_origin_over_length"]);
     }
@@ -114,10 +114,10 @@ mod tests {
     fn a_motion_ends_where_the_cycle_does() {
         let mut lab = Lab::default();
         let question = json!({ "swimmer": "robot", "gait": "circle:70deg", "intervals": 40 });
-        let swum = asked(&mut lab, "simulate", &question);
-        let motion = asked(&mut lab, "motion", &question);
+        let swum = output_of(&mut lab, "simulate", &question);
+        let motion = output_of(&mut lab, "motion", &question);
         assert_eq!(motion.as_array().unwrap().len(), 41 * 26);
-        let net = asked(&mut lab, "net", &question);
+        let net = output_of(&mut lab, "net", &question);
         assert_eq!(net["displacement_m"], swum["displacement_m"]);
         let end = motion[40 * 26 + 3].as_f64().unwrap();
         assert!((end - swum["displacement_m"].as_f64().unwrap()).abs() < 1e-12);
@@ -127,11 +127,11 @@ mod tests {
     fn sliders_change_the_file_and_mistakes_are_told() {
         let mut lab = Lab::default();
         let slid = json!({ "swimmer": "robot", "with": { "chi": 2.5, "max_rate_rad_s": 4.0 } });
-        let told = asked(&mut lab, "swimmer", &slid);
-        let again = asked(&mut lab, "swimmer", &json!({ "swimmer": told["toml"] }));
+        let output = output_of(&mut lab, "swimmer", &slid);
+        let again = output_of(&mut lab, "swimmer", &json!({ "swimmer": output["toml"] }));
         assert_eq!(again["chi"], 2.5);
         assert_eq!(again["max_rate_rad_s"], 4.0);
-        assert_eq!(again["hash"], told["hash"]);
+        assert_eq!(again["hash"], output["hash"]);
         for (name, question, part) in [
             (
                 "swimmer",

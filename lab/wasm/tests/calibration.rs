@@ -37,7 +37,7 @@ fn campaign(swimmer: &str) -> String {
     })
 }
 
-fn asked(lab: &mut Lab, name: &str, bytes: &[u8]) -> Result<Value, String> {
+fn output_of(lab: &mut Lab, name: &str, bytes: &[u8]) -> Result<Value, String> {
     match call(lab, name.as_bytes(), bytes)? {
         Answer::Json(text) => Ok(serde_json::from_str(&text).unwrap()),
         Answer::Bytes(_) => Err("bytes".to_owned()),
@@ -50,20 +50,20 @@ fn a_campaign_is_fitted_as_by_the_library() {
     let text = campaign("ours.toml");
     let mut lab = Lab::default();
     let files = packed(&[("ours.toml", &ours), ("campaign.toml", &text)]);
-    let told = asked(&mut lab, "calibrate", &files).unwrap();
+    let output = output_of(&mut lab, "calibrate", &files).unwrap();
 
     let same = Campaign::parse(&campaign("robot"), "campaign.toml".as_ref()).unwrap();
     let data = CampaignData::load(&same).unwrap();
     let found = calibrate_campaign(&same, &data, FitOptions::default()).unwrap();
-    assert_eq!(told["chi"], found.fit.chi);
-    assert_eq!(told["sphere_radius_m"], found.fit.sphere_radius);
-    assert_eq!(told["runs"].as_array().unwrap().len(), 4);
+    assert_eq!(output["chi"], found.fit.chi);
+    assert_eq!(output["sphere_radius_m"], found.fit.sphere_radius);
+    assert_eq!(output["runs"].as_array().unwrap().len(), 4);
 
-    let number = json!({ "number": told["number"] }).to_string();
-    let assessed = asked(&mut lab, "calibrate assessment", number.as_bytes()).unwrap();
+    let number = json!({ "number": output["number"] }).to_string();
+    let assessed = output_of(&mut lab, "calibrate assessment", number.as_bytes()).unwrap();
     assert!(assessed["verdict"].is_string(), "{assessed}");
-    asked(&mut lab, "calibrate close", number.as_bytes()).unwrap();
-    let gone = asked(&mut lab, "calibrate evidence", number.as_bytes()).unwrap_err();
+    output_of(&mut lab, "calibrate close", number.as_bytes()).unwrap();
+    let gone = output_of(&mut lab, "calibrate evidence", number.as_bytes()).unwrap_err();
     assert!(gone.contains("gone"), "{gone}");
 }
 
@@ -72,8 +72,8 @@ fn a_gait_of_another_size_is_told() {
     let ours = SwimmerFile::preset("robot").unwrap().to_toml();
     let text = campaign("ours.toml").replace("circle:40deg", "circle:46deg");
     let files = packed(&[("ours.toml", &ours), ("campaign.toml", &text)]);
-    let told = asked(&mut Lab::default(), "calibrate", &files).unwrap();
-    let warnings = told["warnings"].as_array().unwrap();
+    let output = output_of(&mut Lab::default(), "calibrate", &files).unwrap();
+    let warnings = output["warnings"].as_array().unwrap();
     let said = |warning: &Value| {
         warning
             .as_str()
@@ -91,12 +91,12 @@ fn a_gait_of_another_size_is_told() {
 fn what_was_not_dropped_is_named() {
     let mut lab = Lab::default();
     let files = packed(&[("campaign.toml", &campaign("ours.toml"))]);
-    let reason = asked(&mut lab, "calibrate", &files).unwrap_err();
+    let reason = output_of(&mut lab, "calibrate", &files).unwrap_err();
     assert!(reason.contains("ours.toml"), "{reason}");
-    let reason = asked(&mut lab, "calibrate", &packed(&[("notes.txt", "")])).unwrap_err();
+    let reason = output_of(&mut lab, "calibrate", &packed(&[("notes.txt", "")])).unwrap_err();
     assert!(reason.contains("campaign"), "{reason}");
     assert!(
-        asked(&mut lab, "calibrate", &[1, 0])
+        output_of(&mut lab, "calibrate", &[1, 0])
             .unwrap_err()
             .contains("less than it said")
     );

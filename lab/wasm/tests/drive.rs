@@ -3,7 +3,7 @@
 use link_protocol::Direction;
 use serde_json::{Value, json};
 use swimmer_files::read_link_log;
-use swimmer_lab::calls::{Answer, Lab, call};
+use swimmer_lab::calls::{CallOutput, Lab, call};
 
 /// Page: module, clock, a session and its robot.
 struct Page {
@@ -15,17 +15,17 @@ struct Page {
     events: Vec<Value>,
 }
 
-fn document(answer: Answer) -> Value {
+fn document(answer: CallOutput) -> Value {
     match answer {
-        Answer::Json(text) => serde_json::from_str(&text).unwrap(),
-        Answer::Bytes(_) => panic!("bytes where a document was expected"),
+        CallOutput::Json(text) => serde_json::from_str(&text).unwrap(),
+        CallOutput::Bytes(_) => panic!("bytes where a document was expected"),
     }
 }
 
-fn bytes(answer: Answer) -> Vec<u8> {
+fn bytes(answer: CallOutput) -> Vec<u8> {
     match answer {
-        Answer::Bytes(bytes) => bytes,
-        Answer::Json(text) => panic!("a document where bytes were expected: {text}"),
+        CallOutput::Bytes(bytes) => bytes,
+        CallOutput::Json(text) => panic!("a document where bytes were expected: {text}"),
     }
 }
 
@@ -72,15 +72,15 @@ impl Page {
     fn step_session(&mut self, from_robot: &[u8]) {
         let answer = self.step_of("session step", self.session, from_robot);
         let (count, rest) = answer.split_first_chunk().unwrap();
-        let (sent, told) = rest.split_at(u32::from_le_bytes(*count) as usize);
+        let (sent, output) = rest.split_at(u32::from_le_bytes(*count) as usize);
         self.to_robot.extend_from_slice(sent);
-        let told: Value = serde_json::from_slice(told).unwrap();
+        let output: Value = serde_json::from_slice(output).unwrap();
         self.events
-            .extend(told["events"].as_array().unwrap().iter().cloned());
+            .extend(output["events"].as_array().unwrap().iter().cloned());
     }
 
     /// Sends a request to the robot and waits for the event that ends it.
-    fn asked(&mut self, name: &str, question: Value) -> Value {
+    fn event_of(&mut self, name: &str, question: Value) -> Value {
         let mut question = question;
         question["number"] = json!(self.session);
         question["now_s"] = json!(self.now);
@@ -96,7 +96,7 @@ impl Page {
     }
 
     fn request(&mut self, request: &Value) -> Value {
-        self.asked("session request", json!({ "request": request }))
+        self.event_of("session request", json!({ "request": request }))
     }
 
     fn stands(&mut self) -> Value {
@@ -106,10 +106,10 @@ impl Page {
 
     fn play(&mut self) {
         assert_eq!(
-            self.asked("session connect", json!({}))["event"],
+            self.event_of("session connect", json!({}))["event"],
             "connected"
         );
-        let uploaded = self.asked("session upload", json!({ "gait": "circle:0.5" }));
+        let uploaded = self.event_of("session upload", json!({ "gait": "circle:0.5" }));
         assert_eq!(uploaded["event"], "uploaded", "{uploaded}");
         let status = self.request(&json!("Status"))["reply"]["Status"].clone();
         let armed = self.request(&json!("Arm"));
@@ -209,8 +209,8 @@ fn another_page_overhears_the_telemetry() {
         page.now += 0.01;
         let sent = page.step_of("twin step", page.twin, &[]);
         let question = [&ear.to_le_bytes()[..], &page.now.to_le_bytes(), &sent].concat();
-        let told = document(call(&mut page.lab, b"overhear step", &question).unwrap());
-        heard += told["events"].as_array().unwrap().len();
+        let output = document(call(&mut page.lab, b"overhear step", &question).unwrap());
+        heard += output["events"].as_array().unwrap().len();
     }
     assert!(heard >= 5, "{heard} of a second");
 }
@@ -219,7 +219,7 @@ fn another_page_overhears_the_telemetry() {
 fn what_cannot_be_is_said() {
     let mut page = Page::open(Some("000102030405060708090a0b0c0d0e0f"));
     assert_eq!(
-        page.asked("session connect", json!({}))["event"],
+        page.event_of("session connect", json!({}))["event"],
         "connected"
     );
     let reason = |lab: &mut Lab, name: &str, question: Value| {
@@ -247,21 +247,21 @@ fn what_cannot_be_is_said() {
 }
 
 #[test]
-fn preflight_tells_what_the_robot_will() {
+fn preflight_predicts_the_play_of_the_robot() {
     let mut page = Page::open(None);
-    let connected = page.asked("session connect", json!({}));
+    let connected = page.event_of("session connect", json!({}));
     let answered = page.request(&json!("Configuration"));
     let configuration = &answered["reply"]["Configuration"];
     assert!(configuration.is_object(), "{answered}");
-    let mut asked = json!({ "swimmer": "robot", "gait": "circle:1.2", "period_s": 0.9, "robot": { "hello": connected["hello"], "configuration": configuration } });
-    let told = page.ask("preflight", &asked);
-    assert_eq!(told["configured_as"], true, "{told}");
+    let mut question = json!({ "swimmer": "robot", "gait": "circle:1.2", "period_s": 0.9, "robot": { "hello": connected["hello"], "configuration": configuration } });
+    let output = page.ask("preflight", &question);
+    assert_eq!(output["configured_as"], true, "{output}");
     assert!(
-        told["refused"].as_str().unwrap().contains("period"),
-        "{told}"
+        output["refused"].as_str().unwrap().contains("period"),
+        "{output}"
     );
-    asked["period_s"] = json!(20.0);
-    let told = page.ask("preflight", &asked);
-    assert!(told["refused"].is_null(), "{told}");
-    assert!(told["loss_share"].as_f64().unwrap().abs() < 0.1);
+    question["period_s"] = json!(20.0);
+    let output = page.ask("preflight", &question);
+    assert!(output["refused"].is_null(), "{output}");
+    assert!(output["loss_share"].as_f64().unwrap().abs() < 0.1);
 }

@@ -4,9 +4,9 @@ import "./calibrate.css";
 import { download } from "../files/download.ts";
 import { useDrop } from "../files/drop.ts";
 import { OpenButton } from "../files/open-button.tsx";
-import type { FitAnswer } from "./answers.ts";
+import type { FitOutput } from "./outputs.ts";
 import { OverAmplitude, Paths, Profiles, Residuals, Ridge, WithoutRun } from "./figures.tsx";
-import { Advice, Further } from "./further.tsx";
+import { Advice, Further } from "./nuisance.tsx";
 import { advice, assessment, clear, doing, evidence, fit, further, open, problem, stop, tracks } from "./model.ts";
 import { Budget, Cycles, Goodness, Known, Parameters, Runs, Servos, Table } from "./tables.tsx";
 
@@ -43,13 +43,13 @@ function DropZone() {
   );
 }
 
-function Fitted({ fit }: { fit: FitAnswer }) {
-  const [known, told] = [evidence.value, assessment.value];
+function Fitted({ fit }: { fit: FitOutput }) {
+  const [known, assessed] = [evidence.value, assessment.value];
   return (
     <div class="calibrate">
       <div class="column">
-        <Parameters fit={fit} evidence={known} assessment={told} />
-        <output hidden id="fit-exact">{JSON.stringify({ ...fit, runs: fit.runs.map((run) => ({ ...run, path: [] })), evidence: known, assessment: told, further: further.value, advice: advice.value })}</output>
+        <Parameters fit={fit} evidence={known} assessment={assessed} />
+        <output hidden id="fit-exact">{JSON.stringify({ ...fit, runs: fit.runs.map((run) => ({ ...run, path: [] })), evidence: known, assessment: assessed, further: further.value, advice: advice.value })}</output>
         <Verdict />
       </div>
       <OverAmplitude runs={fit.runs} evidence={known} />
@@ -57,11 +57,11 @@ function Fitted({ fit }: { fit: FitAnswer }) {
       {known && <Profiles evidence={known} />}
       {known && <WithoutRun evidence={known} paper={fit} />}
       {known && <Residuals evidence={known} />}
-      {told && <Budget told={told} />}
-      {told && <Known told={told} />}
+      {assessed && <Budget assessed={assessed} />}
+      {assessed && <Known assessed={assessed} />}
       <Further />
       {advice.value && <Advice of={advice.value} />}
-      {told && <Goodness told={told} />}
+      {assessed && <Goodness assessed={assessed} />}
       <Servos fit={fit} />
       <Runs fit={fit} />
       <Cycles runs={fit.runs} />
@@ -71,14 +71,14 @@ function Fitted({ fit }: { fit: FitAnswer }) {
 }
 
 function Verdict() {
-  const told = assessment.value;
-  if (!told) return null;
+  const assessed = assessment.value;
+  if (!assessed) return null;
   return (
-    <section class={`card verdict ${told.verdict.replaceAll(" ", "-")}`} aria-label="Verdict">
-      <h2>Verdict: {told.verdict}</h2>
-      {told.reduced_chi2 !== null && <p class="soft">reduced χ² {told.reduced_chi2.toPrecision(3)}</p>}
-      {told.headline.by === "systematics" && <p>Recommended: the estimate with systematics.</p>}
-      {told.reasons.length > 0 ? <ul>{told.reasons.map((reason) => <li key={reason}>{reason}</li>)}</ul> : <p class="soft">Nothing speaks against it.</p>}
+    <section class={`card verdict ${assessed.verdict.replaceAll(" ", "-")}`} aria-label="Verdict">
+      <h2>Verdict: {assessed.verdict}</h2>
+      {assessed.reduced_chi2 !== null && <p class="soft">reduced χ² {assessed.reduced_chi2.toPrecision(3)}</p>}
+      {assessed.headline.by === "systematics" && <p>Recommended: the estimate with systematics.</p>}
+      {assessed.reasons.length > 0 ? <ul>{assessed.reasons.map((reason) => <li key={reason}>{reason}</li>)}</ul> : <p class="soft">Nothing speaks against it.</p>}
     </section>
   );
 }

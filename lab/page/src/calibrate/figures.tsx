@@ -1,7 +1,7 @@
 // Figures of a calibration: results over the amplitude, profiles, ridge of r_s and χ, influence of single runs, paths of the swimmer.
 
 import { useMemo } from "preact/hooks";
-import type { CurvePoint, EvidenceAnswer, Pair, Profile as ProfileAnswer, Run } from "./answers.ts";
+import type { CurvePoint, EvidenceOutput, Pair, Profile as ProfileOutput, Run } from "./outputs.ts";
 import { Chart, degrees, Dots, HEIGHT, line, MARGIN, scale, type Scale, WIDTH } from "./chart.tsx";
 
 /** Name of a file without its folders. */
@@ -18,7 +18,7 @@ interface OfACircle {
   title: string;
   name: string;
   measured(run: Run): readonly [value: number, sd: number];
-  foretold(point: CurvePoint): number;
+  predicted(point: CurvePoint): number;
 }
 
 const OF_A_CIRCLE: readonly OfACircle[] = [
@@ -26,30 +26,30 @@ const OF_A_CIRCLE: readonly OfACircle[] = [
     title: "X over the amplitude",
     name: "X [mm]",
     measured: (run) => [run.x_m * (run.clockwise ? -1000 : 1000), (run.x_sd_m ?? 0) * 1000],
-    foretold: (point) => point.x_m * 1000,
+    predicted: (point) => point.x_m * 1000,
   },
   {
     title: "ΔY over the amplitude",
     name: "ΔY [mm]",
     measured: (run) => [run.delta_y_m * 1000, (run.delta_y_sd_m ?? 0) * 1000],
-    foretold: (point) => point.delta_y_m * 1000,
+    predicted: (point) => point.delta_y_m * 1000,
   },
   {
     title: "Δθ over the amplitude",
     name: "Δθ [°]",
     measured: (run) => [degrees(run.delta_theta_rad), degrees(run.delta_theta_sd_rad ?? 0)],
-    foretold: (point) => degrees(point.delta_theta_rad),
+    predicted: (point) => degrees(point.delta_theta_rad),
   },
 ];
 
 /** Measured values of circles, with twice their standard deviation, and the values of the model. */
-export function OverAmplitude({ runs, evidence }: { runs: readonly Run[]; evidence: EvidenceAnswer | null }) {
+export function OverAmplitude({ runs, evidence }: { runs: readonly Run[]; evidence: EvidenceOutput | null }) {
   return <>{OF_A_CIRCLE.map((quantity) => <OneOverAmplitude key={quantity.title} of={quantity} runs={runs} evidence={evidence} />)}</>;
 }
 
-function OneOverAmplitude({ of, runs, evidence }: { of: OfACircle; runs: readonly Run[]; evidence: EvidenceAnswer | null }) {
+function OneOverAmplitude({ of, runs, evidence }: { of: OfACircle; runs: readonly Run[]; evidence: EvidenceOutput | null }) {
   const measured = runs.flatMap((run) => (run.amplitude_rad === null ? [] : [[degrees(run.amplitude_rad), ...of.measured(run)] as const]));
-  const curve = (points: readonly CurvePoint[]) => points.map((point) => [degrees(point.amplitude_rad), of.foretold(point)] as const);
+  const curve = (points: readonly CurvePoint[]) => points.map((point) => [degrees(point.amplitude_rad), of.predicted(point)] as const);
   const fitted = evidence ? curve(evidence.fitted_curve) : [];
   const start = evidence ? curve(evidence.start_curve) : [];
   const all = [...measured.map(([x, y]) => [x, y] as const), ...fitted];
@@ -70,7 +70,7 @@ function OneOverAmplitude({ of, runs, evidence }: { of: OfACircle; runs: readonl
 }
 
 /** Profile likelihood of one parameter, and the ends of its interval. */
-export function Profiles({ evidence: { profiles } }: { evidence: EvidenceAnswer }) {
+export function Profiles({ evidence: { profiles } }: { evidence: EvidenceOutput }) {
   return (
     <>
       <Profile title="Profile of rₛ" name="rₛ [mm]" of={profiles.sphere_radius_m} factor={1000} />
@@ -79,7 +79,7 @@ export function Profiles({ evidence: { profiles } }: { evidence: EvidenceAnswer 
   );
 }
 
-function Profile({ title, name, of: { points, threshold }, factor }: { title: string; name: string; of: ProfileAnswer; factor: number }) {
+function Profile({ title, name, of: { points, threshold }, factor }: { title: string; name: string; of: ProfileOutput; factor: number }) {
   const near = points.filter(([, height]) => height >= 3 * threshold).map(([value, height]) => [value * factor, height] as const);
   if (near.length < 2) return null;
   const to = scale(near.map(([value]) => value), near.map(([, height]) => height));
@@ -96,7 +96,7 @@ const AXES: [string, string] = ["rₛ [mm]", "χ"];
 
 /** Likelihood over both parameters, its joint regions (long and thin, because the parameters compensate each other) and the samples
 * of the bootstrap. */
-export function Ridge({ evidence, paper }: { evidence: EvidenceAnswer; paper: Pair }) {
+export function Ridge({ evidence, paper }: { evidence: EvidenceOutput; paper: Pair }) {
   const { ridge, draws, likelihood } = evidence;
   const regions = [...ridge.contours].sort((a, b) => b.level - a.level);
   const corners = regions.flatMap((region) => region.corners);
@@ -122,7 +122,7 @@ export function Ridge({ evidence, paper }: { evidence: EvidenceAnswer; paper: Pa
 }
 
 /** Likelihood relative to its maximum, one coloured cell per node of the grid. */
-function LikelihoodMap({ of: { sphere_radius_m, chi, log_ratio }, to }: { of: EvidenceAnswer["ridge"]; to: Scale }) {
+function LikelihoodMap({ of: { sphere_radius_m, chi, log_ratio }, to }: { of: EvidenceOutput["ridge"]; to: Scale }) {
   const [columns, rows] = [sphere_radius_m.length, chi.length];
   const picture = useMemo(() => {
     const canvas = document.createElement("canvas");
@@ -143,7 +143,7 @@ function LikelihoodMap({ of: { sphere_radius_m, chi, log_ratio }, to }: { of: Ev
 }
 
 /** Both fits without each run, which shows the influence of a single run. */
-export function WithoutRun({ evidence, paper }: { evidence: EvidenceAnswer; paper: Pair }) {
+export function WithoutRun({ evidence, paper }: { evidence: EvidenceOutput; paper: Pair }) {
   const without = evidence.without_run;
   if (without.length === 0) return null;
   const of = (fit: "paper" | "likelihood") => without.flatMap((one) => (one[fit] ? [[placed(one[fit]), `without ${short(one.file)}`] as const] : []));
@@ -164,7 +164,7 @@ export function WithoutRun({ evidence, paper }: { evidence: EvidenceAnswer; pape
 }
 
 /** Residuals of each run at the maximum-likelihood estimate, in standard errors. */
-export function Residuals({ evidence }: { evidence: EvidenceAnswer }) {
+export function Residuals({ evidence }: { evidence: EvidenceOutput }) {
   const of = (key: "x_m" | "delta_y_m" | "delta_theta_rad", name: string, aside: number) =>
     evidence.run_errors.flatMap((run, k) => {
       const left = run[key].standardised;

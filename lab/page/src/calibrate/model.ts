@@ -2,18 +2,18 @@
 
 import { signal } from "@preact/signals";
 import { Lab, Latest } from "../wasm/lab.ts";
-import type { AdviceAnswer, AssessmentAnswer, EvidenceAnswer, FitAnswer, FurtherAnswer, Holdings } from "./answers.ts";
+import type { AdviceOutput, AssessmentOutput, EvidenceOutput, FitOutput, NuisanceOutput, Holdings } from "./outputs.ts";
 
 const lab = new Lab("calibrate");
 
 export const tracks = signal<readonly { name: string; holds: Holdings }[]>([]);
-export const fit = signal<FitAnswer | null>(null);
-export const evidence = signal<EvidenceAnswer | null>(null);
-export const assessment = signal<AssessmentAnswer | null>(null);
-export const advice = signal<AdviceAnswer | null>(null);
+export const fit = signal<FitOutput | null>(null);
+export const evidence = signal<EvidenceOutput | null>(null);
+export const assessment = signal<AssessmentOutput | null>(null);
+export const advice = signal<AdviceOutput | null>(null);
 /** Selected words of `--fit-also`, and the result: a fit or an error message. */
 export const also = signal<readonly string[]>([]);
-export const further = signal<FurtherAnswer | null>(null);
+export const further = signal<NuisanceOutput | null>(null);
 export const noFurther = signal("");
 /** Present computation and its duration in seconds. */
 export const doing = signal<{ what: string; seconds: number } | null>(null);
@@ -94,7 +94,7 @@ const fitting = new Latest<readonly string[]>(async (words) => {
   // Results of a removed selection are hidden.
   const isChosen = () => also.value === words;
   try {
-    const answer = await lab.json<FurtherAnswer>("calibrate further", { number: fit.value.number, also: words });
+    const answer = await lab.json<NuisanceOutput>("calibrate further", { number: fit.value.number, also: words });
     if (isChosen()) further.value = answer;
   } catch (error) {
     if (isChosen()) noFurther.value = reason(error);
@@ -137,19 +137,19 @@ async function calibrate(): Promise<void> {
   if (fit.value) await lab.json("calibrate close", { number: fit.value.number });
   forget();
   begin("fitting rₛ and χ");
-  const fitted = await lab.json<FitAnswer>("calibrate", packed([...dropped]));
+  const fitted = await lab.json<FitOutput>("calibrate", packed([...dropped]));
   fit.value = fitted;
   const { number } = fitted;
   begin("weighing the evidence: likelihood, bootstrap, fits without each run");
   try {
-    evidence.value = await lab.json<EvidenceAnswer>("calibrate evidence", { number });
+    evidence.value = await lab.json<EvidenceOutput>("calibrate evidence", { number });
   } catch (error) {
     // A fit can be assessed without it.
     if (reason(error) === STOPPED) throw error;
     fit.value = { ...fitted, warnings: [...fitted.warnings, `no estimate by likelihood: ${reason(error)}`] };
   }
   begin("assessing the fit");
-  assessment.value = await lab.json<AssessmentAnswer>("calibrate assessment", { number });
+  assessment.value = await lab.json<AssessmentOutput>("calibrate assessment", { number });
   begin("weighing what to measure next");
-  advice.value = await lab.json<AdviceAnswer>("calibrate advice", { number });
+  advice.value = await lab.json<AdviceOutput>("calibrate advice", { number });
 }

@@ -2,22 +2,22 @@
 
 import { figure } from "../explore/names.ts";
 import { download } from "../files/download.ts";
-import type { AdviceAnswer } from "./answers.ts";
+import type { AdviceOutput } from "./outputs.ts";
 import { degrees } from "./chart.tsx";
 import { also, choose, further, noFurther } from "./model.ts";
 import { Head, Table } from "./tables.tsx";
 
 /** Words of `swimmer calibrate --fit-also`, with descriptions. */
 const CHOICES: readonly (readonly [word: string, what: string])[] = [
-  ["gain", "what the servos turn over what they are told"],
-  ["gains", "the same, each servo’s"],
+  ["gain", "actual over commanded angle of the servos"],
+  ["gains", "the same for each servo"],
   ["offsets", "of both joints"],
   ["deadband", "of the servos"],
   ["ct", "c_t/μ"],
-  ["marker", "where the reflectors’ middle sits on the link"],
+  ["marker", "position of the reflectors’ middle on the link"],
   ["scale", "of the cameras"],
   ["lengths", "of the links"],
-  ["float", "its rotational drag over a sphere’s"],
+  ["float", "rotational drag of the float over a sphere’s"],
   ["tilt", "of the cameras"],
   ["distortion", "of the lens"],
 ];
@@ -66,7 +66,7 @@ export function Further() {
 const SHOWN = 8;
 
 /** Gaits, ordered by the narrowing of the intervals by one run of each. */
-export function Advice({ of: { period_s, candidates } }: { of: AdviceAnswer }) {
+export function Advice({ of: { period_s, candidates } }: { of: AdviceOutput }) {
   const change = (width: number) => `${signed(100 * (width - 1))} %`;
   return (
     <Table

@@ -37,7 +37,7 @@ export interface Run {
   warnings: string[];
 }
 
-export interface FitAnswer {
+export interface FitOutput {
   number: number;
   runs: Run[];
   sphere_radius_m: number;
@@ -73,7 +73,7 @@ export interface RunError {
 }
 
 /** The command's `evidence.json`, and data for the figures. */
-export interface EvidenceAnswer {
+export interface EvidenceOutput {
   likelihood: { estimate: Pair; intervals: Intervals; correlation: number };
   run_errors: { file: string; x_m: RunError; delta_y_m: RunError; delta_theta_rad: RunError }[];
   profiles: { sphere_radius_m: Profile; chi: Profile };
@@ -108,7 +108,7 @@ export interface Measured {
 }
 
 /** Fit with additional parameters: the command's `further`, and the swimmer file with the values for which it has keys. */
-export interface FurtherAnswer {
+export interface NuisanceOutput {
   parameters: { name: string; unit: string; before: number; value: number; interval: [number, number]; bounds: [number, number] }[];
   level: number;
   correlations: number[][];
@@ -119,7 +119,7 @@ export interface FurtherAnswer {
 }
 
 /** Possible next measurements, the most useful first: the command's `advice`. Ratios of widths with one more run to the present ones. */
-export interface AdviceAnswer {
+export interface AdviceOutput {
   period_s: number;
   candidates: { gait: string; sphere_radius_width: number; chi_width: number; both: number }[];
 }
@@ -149,7 +149,7 @@ export interface Nuisance {
 }
 
 /** Output of the command with the same keys. */
-export interface AssessmentAnswer {
+export interface AssessmentOutput {
   verdict: "trust" | "caution" | "do not use";
   reasons: string[];
   reduced_chi2: number | null;

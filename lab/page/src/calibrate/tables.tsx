@@ -2,7 +2,7 @@
 
 import type { ComponentChildren } from "preact";
 import { figure } from "../explore/names.ts";
-import type { AssessmentAnswer, EvidenceAnswer, FitAnswer, Intervals, Measured, Pair, Run } from "./answers.ts";
+import type { AssessmentOutput, EvidenceOutput, FitOutput, Intervals, Measured, Pair, Run } from "./outputs.ts";
 import { degrees } from "./chart.tsx";
 import { named, short } from "./figures.tsx";
 
@@ -33,7 +33,7 @@ interface Way {
 }
 
 /** Both parameters, one line per method of fitting. */
-export function Parameters({ fit, evidence, assessment }: { fit: FitAnswer; evidence: EvidenceAnswer | null; assessment: AssessmentAnswer | null }) {
+export function Parameters({ fit, evidence, assessment }: { fit: FitOutput; evidence: EvidenceOutput | null; assessment: AssessmentOutput | null }) {
   const likelihood = evidence?.likelihood;
   const wider = assessment ? assessment.systematics ?? null : undefined;
   const bootstrap = evidence ? evidence.bootstrap : undefined;
@@ -77,7 +77,7 @@ export function Parameters({ fit, evidence, assessment }: { fit: FitAnswer; evid
 const chanceOf = (value: number | null) => (value === null ? "–" : value < 1e-3 ? "< 0.001" : value.toFixed(3));
 
 /** Goodness of fit: statistics of each run, and the signs of the residuals. */
-export function Goodness({ told: { goodness, reduced_chi2 } }: { told: AssessmentAnswer }) {
+export function Goodness({ assessed: { goodness, reduced_chi2 } }: { assessed: AssessmentOutput }) {
   const withError = ([value, error]: [number | null, number | null], unit: number, digits: number) =>
     value === null ? "–" : `${figure(value * unit, digits)}${error === null ? "" : ` ± ${(error * unit).toFixed(digits)}`}`;
   const chi2 = (value: number | null) => (value === null ? "–" : value.toPrecision(3));
@@ -106,13 +106,13 @@ export function Goodness({ told: { goodness, reduced_chi2 } }: { told: Assessmen
 }
 
 /** Error budget of both parameters, and alternative explanations of the runs. */
-export function Budget({ told }: { told: AssessmentAnswer }) {
-  if (told.budget.length === 0) return null;
+export function Budget({ assessed }: { assessed: AssessmentOutput }) {
+  if (assessed.budget.length === 0) return null;
   const amount = (by: number, unit: string) => `${Number(by.toPrecision(2))}${unit ? ` ${unit}` : ""}`;
   return (
     <>
       <Table title="Budget" id="budget" head={["if off", "by", "rₛ [mm]", "χ", "known to"]}>
-        {told.budget.map(({ name, by, unit, sphere_radius_m, chi, width, stated }) => (
+        {assessed.budget.map(({ name, by, unit, sphere_radius_m, chi, width, stated }) => (
           <tr key={name}>
             <th scope="row">{name}</th>
             <td>{amount(by, unit)}</td>
@@ -122,9 +122,9 @@ export function Budget({ told }: { told: AssessmentAnswer }) {
           </tr>
         ))}
       </Table>
-      {told.explanations.length > 0 && (
+      {assessed.explanations.length > 0 && (
         <Table title="What would explain the runs better" id="explanations" head={["if this were so", "gain of ln likelihood", "rₛ [mm]", "χ"]}>
-          {told.explanations.map(({ name, gain, estimate }) => (
+          {assessed.explanations.map(({ name, gain, estimate }) => (
             <tr key={name}><th scope="row">{name}</th><td>{figure(gain, 1)}</td><td>{millimetres(estimate.sphere_radius_m)}</td><td>{chiOf(estimate.chi)}</td></tr>
           ))}
         </Table>
@@ -134,15 +134,15 @@ export function Budget({ told }: { told: AssessmentAnswer }) {
 }
 
 /** Nuisance parameters: prior and fitted values. */
-export function Known({ told }: { told: AssessmentAnswer }) {
-  if (!told.systematics || told.systematics.parameters.length === 0) return null;
+export function Known({ assessed }: { assessed: AssessmentOutput }) {
+  if (!assessed.systematics || assessed.systematics.parameters.length === 0) return null;
   const amount = ([value, deviation]: [number, number], unit: string) => {
     const [per, name, digits] = unit === "m" ? [1000, " mm", 2] : unit === "rad" ? [degrees(1), "°", 2] : unit === "s" ? [1000, " ms", 0] : [1, "", 4];
     return `${figure(value * per, digits)} ± ${(deviation * per).toFixed(digits)}${name}`;
   };
   return (
     <Table title="Nuisance parameters" id="known" head={["", "known", "found", "pull"]} notes={["pull: deviation of the runs alone from the known value, in standard deviations"]}>
-      {told.systematics.parameters.map(({ name, unit, known, stated, found, pull }) => (
+      {assessed.systematics.parameters.map(({ name, unit, known, stated, found, pull }) => (
         <tr key={name}>
           <th scope="row">{name}</th>
           <td>{amount(known, unit)}{stated ? "" : " (usual)"}</td>
@@ -155,7 +155,7 @@ export function Known({ told }: { told: AssessmentAnswer }) {
 }
 
 /** Results and notes of each run. */
-export function Runs({ fit }: { fit: FitAnswer }) {
+export function Runs({ fit }: { fit: FitOutput }) {
   return (
     <Table title="Runs" id="runs" head={["run", "gait", "cycles", "X [mm]", "sd [mm]", "ΔY [mm]", "Δθ [°]", "left out"]}>
       {fit.runs.map((run) => (
@@ -195,7 +195,7 @@ export function Cycles({ runs }: { runs: readonly Run[] }) {
 }
 
 /** Behaviour of the servos, measured by the reflectors on the side links: mean over the runs. */
-export function Servos({ fit }: { fit: FitAnswer }) {
+export function Servos({ fit }: { fit: FitOutput }) {
   if (!fit.servos) return null;
   const tell = (measured: Measured | null, unit: number, digits: number) =>
     measured === null ? "–" : `${(measured.value * unit).toFixed(digits)}${measured.error === null ? "" : ` ± ${(measured.error * unit).toFixed(digits)}`}`;

@@ -7,18 +7,18 @@ import { STATES } from "./status.tsx";
 /** State of the robot, in the head of the page. */
 export function RobotBar() {
   if (link.value.state === "closed") return null;
-  const told = telemetry.value;
-  const plays = told && (told.state === "Playing" || told.state === "Paused" || told.state === "Starting");
+  const latest = telemetry.value;
+  const plays = latest && (latest.state === "Playing" || latest.state === "Paused" || latest.state === "Starting");
   return (
-    <div class={`robot-bar ${told ? `state-${told.state}` : ""} ${stale.value ? "old" : ""}`} aria-label="Robot">
-      <strong id="state" data-state={told?.state ?? ""} role="status">
-        {told ? STATES[told.state] : "Nothing heard of the robot yet"}
-        {told && stale.value ? " (old)" : ""}
+    <div class={`robot-bar ${latest ? `state-${latest.state}` : ""} ${stale.value ? "old" : ""}`} aria-label="Robot">
+      <strong id="state" data-state={latest?.state ?? ""} role="status">
+        {latest ? STATES[latest.state] : "Nothing heard of the robot yet"}
+        {latest && stale.value ? " (old)" : ""}
       </strong>
       {plays && (
         <span id="playing">
-          cycle {told.cycle + 1}
-          {told.cycles ? ` of ${told.cycles}` : ", until stopped"}, {Math.round((told.phase / 65536) * 100)} %
+          cycle {latest.cycle + 1}
+          {latest.cycles ? ` of ${latest.cycles}` : ", until stopped"}, {Math.round((latest.phase / 65536) * 100)} %
         </span>
       )}
       {link.value.state !== "open" && <span>{LINK[link.value.state]}</span>}

@@ -2,7 +2,7 @@
 
 import { signal } from "@preact/signals";
 import { activeGait, edit, shown } from "../explore/document.ts";
-import { asked } from "../explore/model.ts";
+import { gaitSource } from "../explore/model.ts";
 import { figure, length } from "../explore/names.ts";
 import { comparison, forecast, inHex } from "./gait.ts";
 import { busy, cancelUpload, held, link, progress, request, said, stop, table, telemetry, upload } from "./robot.ts";
@@ -17,7 +17,7 @@ export function Controls() {
   const state = telemetry.value?.state;
   const rest = state === "Stopped";
   const period = shown.value.period;
-  const gait = asked(activeGait(shown.value));
+  const gait = gaitSource(activeGait(shown.value));
   const mayPlay = state === "Holding" && comparison.value.is === "same";
   const play = { cycles: endless.value ? 0 : cycles.value, period_us: Math.round(period * 1e6), detached: false, checked: { table_crc32: table.value?.crc32 ?? 0, settings_crc32: held.value?.settings_crc32 ?? 0 } };
   return (
@@ -73,19 +73,19 @@ function Which() {
 
 function Preflight() {
   const answer = forecast.value;
-  if (!answer) return <p class="soft">Foretelling …</p>;
-  const { told, reason } = answer;
-  if (!told) return <p class="error">{reason}</p>;
-  const displacement = told.displacement_m ? Math.hypot(...told.displacement_m) : 0;
+  if (!answer) return <p class="soft">Predicting …</p>;
+  const { result, reason } = answer;
+  if (!result) return <p class="error">{reason}</p>;
+  const displacement = result.displacement_m ? Math.hypot(...result.displacement_m) : 0;
   return (
     <div class="preflight" id="preflight">
-      <p class={told.refused ? "error" : "good"}>{told.refused ? `The robot must not play it: ${told.refused}.` : "The robot will play it."}</p>
+      <p class={result.refused ? "error" : "good"}>{result.refused ? `The robot must not play it: ${result.refused}.` : "The robot will play it."}</p>
       <p class="soft">
-        {length(displacement)} a cycle, {figure((told.loss_share ?? 0) * 100, 2)} % less than designed; shortest period {figure(told.min_period_s, 2)} s
-        {told.servo_assumed ? "; the servos’ dead band is assumed" : ""}.
+        {length(displacement)} a cycle, {figure((result.loss_share ?? 0) * 100, 2)} % less than designed; shortest period {figure(result.min_period_s, 2)} s
+        {result.servo_assumed ? "; the servos’ dead band is assumed" : ""}.
       </p>
-      {told.configured_as === false && <p class="error">The robot is configured as another swimmer than Explore’s: what is foretold is not for it.</p>}
-      {told.warnings.filter((warning) => !told.refused || !warning.endsWith(told.refused)).map((warning) => <p key={warning} class="soft">{warning}.</p>)}
+      {result.configured_as === false && <p class="error">The robot is configured as another swimmer than Explore’s: the forecast is not for it.</p>}
+      {result.warnings.filter((warning) => !result.refused || !warning.endsWith(result.refused)).map((warning) => <p key={warning} class="soft">{warning}.</p>)}
     </div>
   );
 }

@@ -12,8 +12,8 @@ import { path, stands, telemetry } from "./robot.ts";
 
 export function Follow() {
   const d = shown.value.halfWidth;
-  const told = telemetry.value;
-  const [phi1, phi2] = told ? [told.setpoint[0] * 1e-4, told.setpoint[1] * 1e-4] : [0, 0];
+  const latest = telemetry.value;
+  const [phi1, phi2] = latest ? [latest.setpoint[0] * 1e-4, latest.setpoint[1] * 1e-4] : [0, 0];
   const there = comparison.value.is === "other" ? robotGait.value : null;
   const differs = comparison.value.is === "other";
   return (
@@ -29,7 +29,7 @@ export function Follow() {
             {curves.value?.zero_curves.map(({ vertices, closed }, k) => <path key={k} class="zero" d={line(vertices, closed)} />)}
             {there && <path id="gait-there" class="gait first" d={line(typeof there === "string" ? curveOfText(there) : pairs(there), true)} />}
             <path id="gait-shown" class={`gait first ${differs ? "not-there" : ""}`} d={line(curveOf(activeGait(shown.value)), true)} />
-            {told && <circle id="setpoint" class="joints" cx={phi1} cy={-phi2} r={d * 0.025} />}
+            {latest && <circle id="setpoint" class="joints" cx={phi1} cy={-phi2} r={d * 0.025} />}
           </svg>
         </div>
       </figure>

@@ -2,11 +2,11 @@
 
 import { computed, effect, signal } from "@preact/signals";
 import { activeGait, shown } from "../explore/document.ts";
-import { asked, swimmer } from "../explore/model.ts";
-import { configuration, foretell, foretold, hello, link, sent, table } from "./robot.ts";
+import { gaitSource, swimmer } from "../explore/model.ts";
+import { configuration, requestForecast, hello, latestForecast, link, sent, table } from "./robot.ts";
 
 const question = computed(() => {
-  const gait = asked(activeGait(shown.value));
+  const gait = gaitSource(activeGait(shown.value));
   if (!gait || !swimmer.value || link.value.state !== "open") return null;
   const robot = hello.value && configuration.value ? { hello: hello.value, configuration: configuration.value } : null;
   return { swimmer: swimmer.value.toml, gait, period_s: shown.value.period, robot };
@@ -20,11 +20,11 @@ effect(() => {
   number.value = of;
   clearTimeout(pause);
   // Waits until dragging pauses.
-  if (about) pause = setTimeout(() => foretell(about, of), 150);
+  if (about) pause = setTimeout(() => requestForecast(about, of), 150);
 });
 
 /** Forecast of the shown gait; null until it is known. */
-export const forecast = computed(() => (foretold.value?.of === number.value ? foretold.value : null));
+export const forecast = computed(() => (latestForecast.value?.of === number.value ? latestForecast.value : null));
 
 export type Comparison =
   /** `true` if it is not known yet. */
@@ -37,7 +37,7 @@ export type Comparison =
 export const comparison = computed((): Comparison => {
   if (link.value.state !== "open") return { is: "unknown" };
   if (table.value === null) return { is: "none" };
-  const shownCrc = forecast.value?.told?.crc32;
+  const shownCrc = forecast.value?.result?.crc32;
   if (shownCrc === undefined) return { is: "unknown" };
   const { crc32 } = table.value;
   return crc32 === shownCrc ? { is: "same", crc32 } : { is: "other", crc32, shown: shownCrc };

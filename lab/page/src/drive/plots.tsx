@@ -7,14 +7,14 @@ import "uplot/dist/uPlot.min.css";
 import { dark } from "../shell/theme.tsx";
 import { history, link, type Sample } from "./robot.ts";
 
-interface Line {
+interface Curve {
   name: string;
   colour: string;
   of(sample: Sample): number | null;
 }
 interface Chart {
   title: string;
-  lines: readonly Line[];
+  lines: readonly Curve[];
 }
 
 const DEGREES = 180 / Math.PI;

@@ -5,7 +5,7 @@ import source from "worker:./worker.ts";
 import { download } from "../files/download.ts";
 import { startWorker } from "../wasm/embedded.ts";
 import { fragment, setFragment } from "../shell/fragment.ts";
-import type { Foretold, Health, Held, Hello, LinkState, News, Order, Request, Stands, TableInfo, Telemetry, WireAsked } from "./words.ts";
+import type { Forecast, Health, Held, Hello, LinkState, News, Order, Request, Stands, TableInfo, Telemetry, WireOptions } from "./words.ts";
 
 export const link = signal<{ state: LinkState; name: string; reason: string }>({ state: "closed", name: "", reason: "" });
 export const wheel = signal<{ yours: boolean; free: boolean } | null>(null);
@@ -19,14 +19,14 @@ export const held = signal<Held | null>(null);
 export const health = signal<Health | null>(null);
 export const stands = signal<Stands | null>(null);
 export const progress = signal<{ done: number; total: number } | null>(null);
-export const foretold = signal<{ of: number; told: Foretold | null; reason: string } | null>(null);
+export const latestForecast = signal<{ of: number; result: Forecast | null; reason: string } | null>(null);
 /** Gaits that this page has sent, by the checksum of their tables; only these can be drawn while the robot plays. */
 export const sent = signal<ReadonlyMap<number, string | number[]>>(new Map());
 /** Result of the last action. */
 export const said = signal<{ text: string; failed: boolean }>({ text: "", failed: false });
 /** Action in progress. */
 export const busy = signal("");
-export const wireKind = signal<WireAsked["kind"] | null>(null);
+export const wireKind = signal<WireOptions["kind"] | null>(null);
 
 /** Sample of the plots. */
 export interface Sample {
@@ -71,7 +71,7 @@ function order(order: Order): void {
 }
 
 function hear(news: News): void {
-  switch (news.told) {
+  switch (news.kind) {
     case "link":
       link.value = news;
       if (news.state !== "open") busy.value = "";
@@ -121,8 +121,8 @@ function hear(news: News): void {
     case "stopped by another":
       said.value = { text: "Another page has asked the robot to stop.", failed: false };
       break;
-    case "foretold":
-      foretold.value = { of: news.of, told: news.foretold, reason: news.reason };
+    case "forecast":
+      latestForecast.value = { of: news.of, result: news.forecast, reason: news.reason };
       break;
     case "log":
       download("link.mcap", news.bytes, "application/octet-stream");
@@ -131,25 +131,25 @@ function hear(news: News): void {
 
 const done = (what: string) => (what === UPLOADING ? "Uploaded." : `The robot has acknowledged: ${what}.`);
 
-function take(told: Telemetry): void {
+function take(latest: Telemetry): void {
   const before = telemetry.peek();
-  telemetry.value = told;
+  telemetry.value = latest;
   heardAt.value = performance.now();
   const sample: Sample = {
-    t: told.robot_us * 1e-6,
-    phi: [told.setpoint[0] * 1e-4, told.setpoint[1] * 1e-4],
-    battery: told.battery_mv === null ? null : told.battery_mv * 1e-3,
+    t: latest.robot_us * 1e-6,
+    phi: [latest.setpoint[0] * 1e-4, latest.setpoint[1] * 1e-4],
+    battery: latest.battery_mv === null ? null : latest.battery_mv * 1e-3,
     trip: health.peek()?.round_trip_s ?? null,
   };
-  const again = before && told.robot_us < before.robot_us;
+  const again = before && latest.robot_us < before.robot_us;
   history.value = again ? [sample] : [...history.peek().slice(1 - KEPT), sample];
-  const began = told.state === "Starting" && before?.state !== "Starting";
-  const here: [number, number] = [told.pose.x, told.pose.y];
+  const began = latest.state === "Starting" && before?.state !== "Starting";
+  const here: [number, number] = [latest.pose.x, latest.pose.y];
   if (again || began) path.value = [here];
-  else if (told.state === "Playing") path.value = [...path.peek().slice(1 - KEPT), here];
+  else if (latest.state === "Playing") path.value = [...path.peek().slice(1 - KEPT), here];
 }
 
-export function connect(wire: WireAsked, key: string | null): void {
+export function connect(wire: WireOptions, key: string | null): void {
   wireKind.value = wire.kind;
   history.value = path.value = [];
   telemetry.value = null;
@@ -161,7 +161,7 @@ export const takeWheel = () => order({ do: "drive" });
 export const leaveWheel = () => order({ do: "watch" });
 export const downloadLog = () => order({ do: "log" });
 export const cancelUpload = () => order({ do: "cancel upload" });
-export const foretell = (question: object, of: number) => order({ do: "preflight", question, of });
+export const requestForecast = (question: object, of: number) => order({ do: "preflight", question, of });
 
 /** Stops never wait for a reply, a dialog or another action. */
 export const stop = () => order({ do: "stop" });
@@ -190,15 +190,15 @@ export function upload(gait: string | number[]): void {
 /** Token that `swimmer lab --port` put into the address: stored for this tab, and removed from the address, which may be shared. */
 const SERVED = "swimmer-link";
 export function served(): { url: string; token: string } | null {
-  const told = fragment().get("link");
-  if (told) {
+  const fromLink = fragment().get("link");
+  if (fromLink) {
     try {
-      sessionStorage.setItem(SERVED, told);
+      sessionStorage.setItem(SERVED, fromLink);
     } catch {
       // Without storage, the page needs the address again after a reload.
     }
     setFragment("link", undefined);
-    kept = told;
+    kept = fromLink;
   }
   const token = kept ?? remembered();
   if (!token || !location.protocol.startsWith("http")) return null;

@@ -30,10 +30,10 @@ const version = ({ firmware: { major, minor, patch } }: Hello) => `${major}.${mi
 const degrees = (unit: number) => `${figure((unit * 1e-4 * 180) / Math.PI, 1)}°`;
 
 export function Status() {
-  const told = telemetry.value;
+  const latest = telemetry.value;
   if (link.value.state === "closed") return null;
-  if (!told) return <section class="card" aria-label="State"><p class="soft">The robot has told nothing yet.</p></section>;
-  const flags = FLAGS.filter(([bit]) => told.flags & bit).map(([, name]) => name);
+  if (!latest) return <section class="card" aria-label="State"><p class="soft">The robot has reported nothing yet.</p></section>;
+  const flags = FLAGS.filter(([bit]) => latest.flags & bit).map(([, name]) => name);
   const trip = health.value?.round_trip_s;
   return (
     <section class="card state" aria-label="State">
@@ -41,11 +41,11 @@ export function Status() {
       {flags.length > 0 && <p class="error">{flags.join(" · ")}</p>}
       <table class="readout">
         <tbody>
-          <Row name="cycle">{told.cycle}{told.cycles ? ` of ${told.cycles}` : ""}, {Math.round((told.phase / 65536) * 100)} %</Row>
-          <Row name="joints">{degrees(told.setpoint[0])}, {degrees(told.setpoint[1])}</Row>
-          <Row name="pulses">{told.pulse_ns[0] ? told.pulse_ns.map((ns) => `${figure(ns / 1000, 1)} µs`).join(", ") : "off"}</Row>
-          <Row name="predicted pose">{figure(told.pose.x * 1000, 1)}, {figure(told.pose.y * 1000, 1)} mm, {figure((told.pose.theta * 180) / Math.PI, 1)}°</Row>
-          <Row name="battery">{told.battery_mv === null ? "not measured" : `${figure(told.battery_mv / 1000, 2)} V`}</Row>
+          <Row name="cycle">{latest.cycle}{latest.cycles ? ` of ${latest.cycles}` : ""}, {Math.round((latest.phase / 65536) * 100)} %</Row>
+          <Row name="joints">{degrees(latest.setpoint[0])}, {degrees(latest.setpoint[1])}</Row>
+          <Row name="pulses">{latest.pulse_ns[0] ? latest.pulse_ns.map((ns) => `${figure(ns / 1000, 1)} µs`).join(", ") : "off"}</Row>
+          <Row name="predicted pose">{figure(latest.pose.x * 1000, 1)}, {figure(latest.pose.y * 1000, 1)} mm, {figure((latest.pose.theta * 180) / Math.PI, 1)}°</Row>
+          <Row name="battery">{latest.battery_mv === null ? "not measured" : `${figure(latest.battery_mv / 1000, 2)} V`}</Row>
           <Row name="link">{trip == null ? "–" : `${figure(trip * 1000, 1)} ms round trip`}{health.value ? `, ${health.value.counters.retransmissions} repeats` : ""}</Row>
           <Row name="gait there">{table.value ? `CRC ${inHex(table.value.crc32)}, ${table.value.knots} knots, at least ${figure(table.value.min_period_us * 1e-6, 2)} s` : "none"}</Row>
           <Row name="robot">{hello.value ? `${hello.value.board}, firmware ${version(hello.value)}` : "another page’s"}</Row>

@@ -1,10 +1,10 @@
 // Transports of bytes: a serial port of the browser, a WebSocket of `swimmer lab`, the twin in the page.
 
 import type { Module } from "../wasm/module.ts";
-import type { Stands, WireAsked } from "./words.ts";
+import type { Stands, WireOptions } from "./words.ts";
 
 /** Callbacks for the events of a transport. */
-export interface Ear {
+export interface WireListener {
   /** The transport is open. */
   up(name: string, bytesPerSecond: number): void;
   bytes(bytes: Uint8Array): void;
@@ -30,9 +30,9 @@ export interface Wire {
 const AGAIN = 500;
 const BITS_OF_A_BYTE = 10;
 
-export function open(asked: WireAsked, module: Module, ear: Ear): Wire {
-  if (asked.kind === "twin") return new TwinWire(module, asked, ear);
-  return asked.kind === "serial" ? new SerialWire(asked.baud, ear) : new SocketWire(asked, ear);
+export function open(options: WireOptions, module: Module, listener: WireListener): Wire {
+  if (options.kind === "twin") return new TwinWire(module, options, listener);
+  return options.kind === "serial" ? new SerialWire(options.baud, listener) : new SocketWire(options, listener);
 }
 
 /** Robot in the page: runs in real time, with a limited number of steps at once. */
@@ -50,14 +50,14 @@ class TwinWire implements Wire {
 
   constructor(
     readonly module: Module,
-    asked: { swimmer: string; seed: number },
-    readonly ear: Ear,
+    options: { swimmer: string; seed: number },
+    readonly listener: WireListener,
   ) {
-    const { swimmer, seed } = asked;
+    const { swimmer, seed } = options;
     const answer = module.call("twin open", { swimmer, seed });
     this.#number = "json" in answer ? (answer.json as { number: number }).number : 0;
     this.#timer = setInterval(() => this.#step(), TwinWire.STEP);
-    queueMicrotask(() => ear.up("the robot in this page", 11_520));
+    queueMicrotask(() => listener.up("the robot in this page", 11_520));
   }
 
   #step(): void {
@@ -67,11 +67,11 @@ class TwinWire implements Wire {
     this.#before = now;
     const answer = this.module.call("twin step", stepOf(this.#number, this.#robot, this.#waiting));
     this.#waiting = [];
-    if ("bytes" in answer && answer.bytes.length > 0) this.ear.bytes(answer.bytes);
+    if ("bytes" in answer && answer.bytes.length > 0) this.listener.bytes(answer.bytes);
     if (now - this.#looked < TwinWire.LOOK) return;
     this.#looked = now;
     const stands = this.module.call("twin stands", { number: this.#number });
-    if ("json" in stands) this.ear.stands(stands.json as Stands);
+    if ("json" in stands) this.listener.stands(stands.json as Stands);
   }
 
   send(bytes: Uint8Array): void {
@@ -114,32 +114,32 @@ class SocketWire implements Wire {
   #timer: ReturnType<typeof setTimeout> | undefined;
 
   constructor(
-    readonly asked: { url: string; token: string },
-    readonly ear: Ear,
+    readonly options: { url: string; token: string },
+    readonly listener: WireListener,
   ) {
     this.#dial();
   }
 
   #dial(): void {
-    const socket = new WebSocket(this.asked.url, ["swimmer", this.asked.token]);
+    const socket = new WebSocket(this.options.url, ["swimmer", this.options.token]);
     socket.binaryType = "arraybuffer";
     socket.onmessage = ({ data }: MessageEvent<string | ArrayBuffer>) => {
-      if (data instanceof ArrayBuffer) this.ear.bytes(new Uint8Array(data));
-      else this.#hear(JSON.parse(data) as Said);
+      if (data instanceof ArrayBuffer) this.listener.bytes(new Uint8Array(data));
+      else this.#hear(JSON.parse(data) as ServerMessage);
     };
     socket.onclose = () => {
       if (this.#closed) return;
-      this.ear.gone("the server does not answer: is `swimmer lab` still running, and is this its newest address?");
+      this.listener.gone("the server does not answer: is `swimmer lab` still running, and is this its newest address?");
       this.#timer = setTimeout(() => this.#dial(), AGAIN);
     };
     this.#socket = socket;
   }
 
-  #hear(said: Said): void {
-    if (said.told === "wheel") this.ear.wheel(said.yours, said.free);
-    else if (said.told === "stopped") this.ear.stoppedByAnother();
-    else if (said.open) this.ear.up(said.name, said.bytes_per_second);
-    else this.ear.gone(said.why ?? `${said.name} is gone`);
+  #hear(message: ServerMessage): void {
+    if (message.told === "wheel") this.listener.wheel(message.yours, message.free);
+    else if (message.told === "stopped") this.listener.stoppedByAnother();
+    else if (message.open) this.listener.up(message.name, message.bytes_per_second);
+    else this.listener.gone(message.why ?? `${message.name} is gone`);
   }
 
   send(bytes: Uint8Array<ArrayBuffer>): void {
@@ -162,7 +162,7 @@ class SocketWire implements Wire {
   }
 }
 
-type Said =
+type ServerMessage =
   | { told: "wheel"; yours: boolean; free: boolean }
   | { told: "port"; name: string; open: boolean; why: string | null; bytes_per_second: number }
   | { told: "stopped" };
@@ -193,11 +193,11 @@ class SerialWire implements Wire {
   #port: SerialPort | undefined;
   /** Free capacity of an idle writer. */
   #idle: number | null = null;
-  #told = "";
+  #reported = "";
 
   constructor(
     readonly baud: number,
-    readonly ear: Ear,
+    readonly listener: WireListener,
   ) {
     void this.#live();
   }
@@ -211,8 +211,8 @@ class SerialWire implements Wire {
         await this.#carry(port);
       } catch (error) {
         const reason = error instanceof Error ? error.message : String(error);
-        if (!this.#closed && reason !== this.#told) this.ear.gone(reason);
-        this.#told = reason;
+        if (!this.#closed && reason !== this.#reported) this.listener.gone(reason);
+        this.#reported = reason;
       }
       await new Promise((resolve) => setTimeout(resolve, AGAIN));
     }
@@ -225,12 +225,12 @@ class SerialWire implements Wire {
       this.#writer = port.writable?.getWriter();
       this.#idle = this.#writer?.desiredSize ?? null;
       this.#reader = port.readable?.getReader();
-      this.#told = "";
-      this.ear.up("the serial port", this.baud / BITS_OF_A_BYTE);
+      this.#reported = "";
+      this.listener.up("the serial port", this.baud / BITS_OF_A_BYTE);
       for (;;) {
         const { value, done } = (await this.#reader?.read()) ?? { value: undefined, done: true };
         if (done) throw new Error("the serial port was unplugged; plug it in again, and the robot is greeted anew");
-        if (value && value.length > 0) this.ear.bytes(value);
+        if (value && value.length > 0) this.listener.bytes(value);
       }
     } finally {
       this.#writer?.releaseLock();

@@ -56,7 +56,7 @@ export type Event =
   | { event: "failed"; ticket: number; reason: string };
 
 /** Transport to a robot. */
-export type WireAsked =
+export type WireOptions =
   | { kind: "twin"; swimmer: string; seed: number }
   | { kind: "serial"; baud: number }
   | { kind: "socket"; url: string; token: string };
@@ -65,7 +65,7 @@ export type Request = string | Record<string, unknown>;
 
 /** Messages from the page to the worker. */
 export type Order =
-  | { do: "open"; wire: WireAsked; key: string | null }
+  | { do: "open"; wire: WireOptions; key: string | null }
   | { do: "close" }
   | { do: "request"; request: Request; what: string }
   | { do: "upload"; gait: string | number[]; of: number }
@@ -100,7 +100,7 @@ export interface Stands {
   cycles: number;
 }
 
-export interface Foretold {
+export interface Forecast {
   /** Checksum of the table that an upload of this gait sends. */
   crc32: number;
   period_s: number;
@@ -116,20 +116,20 @@ export interface Foretold {
 
 /** Messages from the worker to the page. */
 export type News =
-  | { told: "link"; state: LinkState; name: string; reason: string }
-  | { told: "events"; events: Event[] }
-  | { told: "done"; what: string; reason: string | null }
-  | { told: "hello"; hello: Hello; configuration: object | null }
-  | { told: "table"; table: TableInfo | null }
-  | { told: "held"; held: Held }
+  | { kind: "link"; state: LinkState; name: string; reason: string }
+  | { kind: "events"; events: Event[] }
+  | { kind: "done"; what: string; reason: string | null }
+  | { kind: "hello"; hello: Hello; configuration: object | null }
+  | { kind: "table"; table: TableInfo | null }
+  | { kind: "held"; held: Held }
   /** The gait of the upload `of` is the robot's table. */
-  | { told: "uploaded"; of: number; table: TableInfo }
-  | { told: "progress"; done: number; total: number }
-  | { told: "health"; health: Health }
-  | { told: "stands"; stands: Stands }
-  | { told: "wheel"; yours: boolean; free: boolean }
-  | { told: "stopped by another" }
-  | { told: "foretold"; of: number; foretold: Foretold | null; reason: string }
+  | { kind: "uploaded"; of: number; table: TableInfo }
+  | { kind: "progress"; done: number; total: number }
+  | { kind: "health"; health: Health }
+  | { kind: "stands"; stands: Stands }
+  | { kind: "wheel"; yours: boolean; free: boolean }
+  | { kind: "stopped by another" }
+  | { kind: "forecast"; of: number; forecast: Forecast | null; reason: string }
   /** The worker checks that the main thread is alive. */
-  | { told: "alive?" }
-  | { told: "log"; bytes: ArrayBuffer };
+  | { kind: "alive?" }
+  | { kind: "log"; bytes: ArrayBuffer };

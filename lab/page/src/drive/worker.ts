@@ -2,8 +2,8 @@
 // lease is half a second.
 
 import { Module } from "../wasm/module.ts";
-import { type Ear, open, stepOf, type Wire } from "./wires.ts";
-import type { Event, Foretold, Health, News, Order, Reply, Request, Status } from "./words.ts";
+import { type WireListener, open, stepOf, type Wire } from "./wires.ts";
+import type { Event, Forecast, Health, News, Order, Reply, Request, Status } from "./words.ts";
 
 /** Longest interval between two steps of the session, ms. */
 const BEAT = 20;
@@ -20,11 +20,11 @@ let module: Module;
 let wire: Wire | undefined;
 let wireName = "";
 let session: number | undefined;
-let ear: number | undefined;
+let spectator: number | undefined;
 let key: string | null = null;
 let timer: ReturnType<typeof setTimeout> | undefined;
 /** Purpose of each ticket. */
-const asked = new Map<number, string>();
+const pending = new Map<number, string>();
 /** Number of the upload in progress, chosen by the page. */
 let uploading = 0;
 let looks = 0;
@@ -46,35 +46,35 @@ const CONFIGURATION = "reading the configuration";
 const STATUS = "reading which gait and settings the robot holds";
 const UPLOADING = "uploading the gait";
 
-const ears: Ear = {
+const listener: WireListener = {
   up(name, bytesPerSecond) {
     wireName = name;
     try {
       openSession(bytesPerSecond);
     } catch (error) {
-      tell({ told: "link", state: "gone", name: wireName, reason: reasonOf(error) });
+      tell({ kind: "link", state: "gone", name: wireName, reason: reasonOf(error) });
     }
   },
   bytes(bytes) {
     if (session !== undefined) step(bytes);
-    else if (ear !== undefined) overhear(bytes);
+    else if (spectator !== undefined) overhear(bytes);
   },
   gone(reason) {
     closeSession();
-    tell({ told: "link", state: "gone", name: wireName, reason });
+    tell({ kind: "link", state: "gone", name: wireName, reason });
   },
   wheel(yours, free) {
     if (yours) {
       if (session === undefined) openSession(lineSpeed);
     } else {
       closeSession();
-      ear = json<{ number: number }>("overhear open", {}).number;
-      tell({ told: "link", state: "watching", name: wireName, reason: "" });
+      spectator = json<{ number: number }>("overhear open", {}).number;
+      tell({ kind: "link", state: "watching", name: wireName, reason: "" });
     }
-    tell({ told: "wheel", yours, free });
+    tell({ kind: "wheel", yours, free });
   },
-  stoppedByAnother: () => tell({ told: "stopped by another" }),
-  stands: (stands) => tell({ told: "stands", stands }),
+  stoppedByAnother: () => tell({ kind: "stopped by another" }),
+  stands: (stands) => tell({ kind: "stands", stands }),
 };
 
 let lineSpeed = 11_520;
@@ -89,16 +89,16 @@ function openSession(bytesPerSecond: number): void {
     epoch_s: performance.timeOrigin / 1000,
     key,
   }).number;
-  tell({ told: "link", state: "greeting", name: wireName, reason: "" });
+  tell({ kind: "link", state: "greeting", name: wireName, reason: "" });
   greet();
 }
 
 function closeSession(): void {
   clearTimeout(timer);
   if (session !== undefined) json("session close", { number: session });
-  if (ear !== undefined) json("overhear close", { number: ear });
-  session = ear = hello = undefined;
-  asked.clear();
+  if (spectator !== undefined) json("overhear close", { number: spectator });
+  session = spectator = hello = undefined;
+  pending.clear();
 }
 
 function greet(): void {
@@ -107,14 +107,14 @@ function greet(): void {
 
 function ask(name: string, question: object, what: string, stops = false): void {
   if (session === undefined) {
-    tell({ told: "done", what, reason: `${what}: no robot is connected` });
+    tell({ kind: "done", what, reason: `${what}: no robot is connected` });
     return;
   }
   try {
     const { ticket } = json<{ ticket: number }>(name, { number: session, now_s: now(), ...question });
-    asked.set(ticket, what);
+    pending.set(ticket, what);
   } catch (error) {
-    tell({ told: "done", what, reason: reasonOf(error) });
+    tell({ kind: "done", what, reason: reasonOf(error) });
   }
   step(new Uint8Array(), stops);
 }
@@ -130,12 +130,12 @@ function step(received: Uint8Array, stops = false): void {
   const count = new DataView(bytes.buffer).getUint32(0, true);
   if (count > 0 && stops) wire?.sendStop(bytes.slice(4, 4 + count));
   else if (count > 0) wire?.send(bytes.slice(4, 4 + count));
-  const told = JSON.parse(new TextDecoder().decode(bytes.subarray(4 + count))) as { events: Event[]; next_s: number | null };
+  const news = JSON.parse(new TextDecoder().decode(bytes.subarray(4 + count))) as { events: Event[]; next_s: number | null };
   clearTimeout(timer);
-  const wait = told.next_s === null ? BEAT : Math.max(0, told.next_s - now()) * 1000;
+  const wait = news.next_s === null ? BEAT : Math.max(0, news.next_s - now()) * 1000;
   timer = setTimeout(() => step(new Uint8Array()), Math.min(wait, BEAT));
-  for (const event of told.events) hear(event);
-  if (told.events.length > 0) tell({ told: "events", events: told.events });
+  for (const event of news.events) hear(event);
+  if (news.events.length > 0) tell({ kind: "events", events: news.events });
 }
 
 function hear(event: Event): void {
@@ -146,34 +146,34 @@ function hear(event: Event): void {
     return;
   }
   if (event.event === "progress") {
-    tell({ told: "progress", done: event.done, total: event.total });
+    tell({ kind: "progress", done: event.done, total: event.total });
     return;
   }
-  const what = asked.get(event.ticket) ?? "";
-  asked.delete(event.ticket);
+  const what = pending.get(event.ticket) ?? "";
+  pending.delete(event.ticket);
   if (event.event === "failed") {
     if (what === GREETING) {
-      tell({ told: "link", state: "gone", name: wireName, reason: event.reason });
+      tell({ kind: "link", state: "gone", name: wireName, reason: event.reason });
       // Finds a robot that is switched on later.
       timer = setTimeout(greet, LOOK);
     } else {
-      if (what !== STATUS) tell({ told: "done", what, reason: event.reason });
+      if (what !== STATUS) tell({ kind: "done", what, reason: event.reason });
       // E-stops or settings may have changed, so the values for the next request are read again.
       if (what !== STATUS) request("Status", STATUS);
     }
     return;
   }
   if (event.event === "connected") {
-    tell({ told: "link", state: "open", name: wireName, reason: event.restarted ? "The robot has restarted." : "" });
-    tell({ told: "hello", hello: event.hello, configuration: null });
+    tell({ kind: "link", state: "open", name: wireName, reason: event.restarted ? "The robot has restarted." : "" });
+    tell({ kind: "hello", hello: event.hello, configuration: null });
     hello = event.hello;
     request("Configuration", CONFIGURATION);
     request("Status", STATUS);
     return;
   }
-  if (event.event === "uploaded") tell({ told: "uploaded", of: uploading, table: event.table });
+  if (event.event === "uploaded") tell({ kind: "uploaded", of: uploading, table: event.table });
   if (event.event === "answered") answered(event.reply);
-  if (what !== CONFIGURATION && what !== STATUS) tell({ told: "done", what, reason: null });
+  if (what !== CONFIGURATION && what !== STATUS) tell({ kind: "done", what, reason: null });
 }
 
 /** State of the robot by its last telemetry. */
@@ -182,31 +182,31 @@ let hello: (Event & { event: "connected" })["hello"] | undefined;
 
 function answered(reply: Reply): void {
   if (typeof reply !== "object") return;
-  if ("Configuration" in reply && hello) tell({ told: "hello", hello, configuration: reply.Configuration as object });
+  if ("Configuration" in reply && hello) tell({ kind: "hello", hello, configuration: reply.Configuration as object });
   if ("Status" in reply) {
     const { table, settings_crc32, estops } = reply.Status as Status;
-    tell({ told: "table", table });
-    tell({ told: "held", held: { settings_crc32, estops } });
+    tell({ kind: "table", table });
+    tell({ kind: "held", held: { settings_crc32, estops } });
   }
 }
 
 function overhear(bytes: Uint8Array): void {
-  if (ear === undefined) return;
-  const { events } = json<{ events: Event[] }>("overhear step", stepOf(ear, now(), [bytes]));
-  if (events.length > 0) tell({ told: "events", events });
+  if (spectator === undefined) return;
+  const { events } = json<{ events: Event[] }>("overhear step", stepOf(spectator, now(), [bytes]));
+  if (events.length > 0) tell({ kind: "events", events });
 }
 
 setInterval(() => {
   if (performance.now() - alive < HANGS) wire?.say("here");
   // Messages are handled in a hidden page too, where timers tick rarely.
-  tell({ told: "alive?" });
+  tell({ kind: "alive?" });
 }, SIGN);
 
 setInterval(() => {
   if (session === undefined) return;
-  tell({ told: "health", health: json<Health>("session link", { number: session }) });
+  tell({ kind: "health", health: json<Health>("session link", { number: session }) });
   looks += 1;
-  const isAsked = [...asked.values()].some((what) => what === STATUS || what === GREETING || what === UPLOADING);
+  const isAsked = [...pending.values()].some((what) => what === STATUS || what === GREETING || what === UPLOADING);
   if (hello && looks % STATUS_EVERY === 0 && !isAsked) request("Status", STATUS);
 }, LOOK);
 
@@ -215,12 +215,12 @@ function perform(order: Order): void {
     case "open":
       closeWire();
       key = order.key;
-      tell({ told: "link", state: "opening", name: "", reason: "" });
-      wire = open(order.wire, module, ears);
+      tell({ kind: "link", state: "opening", name: "", reason: "" });
+      wire = open(order.wire, module, listener);
       return;
     case "close":
       closeWire();
-      tell({ told: "link", state: "closed", name: "", reason: "" });
+      tell({ kind: "link", state: "closed", name: "", reason: "" });
       return;
     case "stop":
     case "estop":
@@ -244,9 +244,9 @@ function perform(order: Order): void {
       return;
     case "preflight":
       try {
-        tell({ told: "foretold", of: order.of, foretold: json<Foretold>("preflight", order.question), reason: "" });
+        tell({ kind: "forecast", of: order.of, forecast: json<Forecast>("preflight", order.question), reason: "" });
       } catch (error) {
-        tell({ told: "foretold", of: order.of, foretold: null, reason: reasonOf(error) });
+        tell({ kind: "forecast", of: order.of, forecast: null, reason: reasonOf(error) });
       }
       return;
     case "alive":
@@ -255,7 +255,7 @@ function perform(order: Order): void {
     case "log": {
       if (session === undefined) return;
       const answer = module.call("session log", { number: session });
-      if ("bytes" in answer) tell({ told: "log", bytes: answer.bytes.buffer }, [answer.bytes.buffer]);
+      if ("bytes" in answer) tell({ kind: "log", bytes: answer.bytes.buffer }, [answer.bytes.buffer]);
     }
   }
 }
@@ -278,6 +278,6 @@ self.onmessage = async ({ data }: MessageEvent<WebAssembly.Module | Order>) => {
     module = await loading;
     perform(data);
   } catch (error) {
-    tell({ told: "done", what: data.do, reason: reasonOf(error) });
+    tell({ kind: "done", what: data.do, reason: reasonOf(error) });
   }
 };

@@ -107,7 +107,7 @@ function OptimumRow({ what }: { what: Optimum }) {
           </label>
         </th>
         <td data-optimum={what}>
-          {!wanted ? "" : searching.value?.what === what ? <Searching seconds={searching.value.seconds} /> : !found ? "…" : "reason" in found ? (found.reason === STOPPED ? STOPPED : "none") : brief(what, found.told)}
+          {!wanted ? "" : searching.value?.what === what ? <Searching seconds={searching.value.seconds} /> : !found ? "…" : "reason" in found ? (found.reason === STOPPED ? STOPPED : "none") : brief(what, found.output)}
         </td>
         <td>
           <button class="small" onClick={take} aria-label={`Take ${NAMES[what]}`}>Take</button>
@@ -129,11 +129,11 @@ function Searching({ seconds }: { seconds: number }) {
   );
 }
 
-function brief(what: Optimum, told: { displacement_over_length: number; efficiency: number; rotation_rad: number; lateral_over_length: number; speed_over_length_per_s: number | null; certificate: { pass: boolean } }): string {
-  const mark = told.certificate.pass ? "✓ " : "";
-  if (what === "turning") return `${mark}θ ${angle(told.rotation_rad)}`;
-  if (what === "sideways") return `${mark}Y/L ${figure(told.lateral_over_length, 4)}`;
-  if (what === "speed") return `${mark}${figure(told.speed_over_length_per_s ?? 0, 5)} L/s`;
-  if (what === "displacement") return `${mark}X/L ${figure(told.displacement_over_length, 4)}`;
-  return `${mark}ξ ${figure(told.efficiency, 5)}`;
+function brief(what: Optimum, result: { displacement_over_length: number; efficiency: number; rotation_rad: number; lateral_over_length: number; speed_over_length_per_s: number | null; certificate: { pass: boolean } }): string {
+  const mark = result.certificate.pass ? "✓ " : "";
+  if (what === "turning") return `${mark}θ ${angle(result.rotation_rad)}`;
+  if (what === "sideways") return `${mark}Y/L ${figure(result.lateral_over_length, 4)}`;
+  if (what === "speed") return `${mark}${figure(result.speed_over_length_per_s ?? 0, 5)} L/s`;
+  if (what === "displacement") return `${mark}X/L ${figure(result.displacement_over_length, 4)}`;
+  return `${mark}ξ ${figure(result.efficiency, 5)}`;
 }

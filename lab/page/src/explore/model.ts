@@ -2,7 +2,7 @@
 
 import { batch, computed, effect, signal } from "@preact/signals";
 import { Lab, Latest } from "../wasm/lab.ts";
-import type { Evidence, FoundAnswer, Mapped, Net, Swum, SwimmerAnswer, TankAnswer } from "./answers.ts";
+import type { Evidence, OptimizeOutput, Mapped, Net, SimulateOutput, SwimmerOutput, TankOutput } from "./outputs.ts";
 import { type Document, type Gait, type Optimum, activeGait, shown } from "./document.ts";
 import { pairs, sampled } from "./spline.ts";
 
@@ -11,33 +11,33 @@ export const quick = new Lab();
 const slow = new Lab();
 const search = new Lab();
 
-export const swimmer = signal<SwimmerAnswer | null>(null);
+export const swimmer = signal<SwimmerOutput | null>(null);
 /** Time of the first results, ms since the page was opened. */
 export const firstNumbers = signal<number | null>(null);
 export const trouble = signal("");
-export const swum = signal<readonly [Swum | null, Swum | null]>([null, null]);
-export const tank = signal<readonly [TankAnswer | null, TankAnswer | null]>([null, null]);
-export const evidence = signal<{ of: string; told: Evidence } | null>(null);
+export const swum = signal<readonly [SimulateOutput | null, SimulateOutput | null]>([null, null]);
+export const tank = signal<readonly [TankOutput | null, TankOutput | null]>([null, null]);
+export const evidence = signal<{ of: string; output: Evidence } | null>(null);
 export const motions = signal<readonly [Float64Array | null, Float64Array | null]>([null, null]);
 export const map = signal<{ heights: Float64Array; count: number; row: string; halfWidth: number } | null>(null);
 export const curves = signal<Mapped | null>(null);
-export type FoundOptimum = { of: string } & ({ told: FoundAnswer } | { reason: string });
+export type FoundOptimum = { of: string } & ({ output: OptimizeOutput } | { reason: string });
 export const optima = signal<ReadonlyMap<Optimum, FoundOptimum>>(new Map());
 
 export const INTERVALS = 240;
 
 /** Gait in the format of the module; null while it is being searched for. */
-export function asked(gait: Gait | null): string | number[] | null {
+export function gaitSource(gait: Gait | null): string | number[] | null {
   if (!gait) return null;
   if (gait.kind === "drawn") return sampled(gait.points);
   if (gait.kind === "text") return gait.text;
   const found = optima.value.get(gait.what);
-  return found && "told" in found ? found.told.gait : null;
+  return found && "output" in found ? found.output.gait : null;
 }
 
 /** The curve of a gait, for the map. */
 export function curveOf(gait: Gait | null): readonly (readonly [number, number])[] {
-  const question = asked(gait);
+  const question = gaitSource(gait);
   if (!question) return [];
   return typeof question === "string" ? curveOfText(question) : pairs(question);
 }
@@ -56,17 +56,17 @@ const bounds = ({ maxAngle, noOverlap }: Document) => ({
   no_overlap: noOverlap,
 });
 
-function told(error: unknown): void {
+function showError(error: unknown): void {
   trouble.value = error instanceof Error ? error.message : String(error);
 }
 
 const latestSwimmer = new Latest(async (question: object) => {
   try {
-    const answer = await quick.json<SwimmerAnswer>("swimmer", question);
+    const answer = await quick.json<SwimmerOutput>("swimmer", question);
     if (answer.toml !== swimmer.value?.toml) swimmer.value = answer;
     trouble.value = answer.doubts[0] ?? "";
   } catch (error) {
-    told(error);
+    showError(error);
   }
 });
 const swimmerAsked = computed(() => JSON.stringify({ swimmer: shown.value.swimmer, with: shown.value.with }));
@@ -91,7 +91,7 @@ const at = <T>(pair: readonly [T, T], slot: Slot, value: T): readonly [T, T] =>
 for (const slot of [0, 1] as const) {
   const question = computed(() => {
     if (isHeld(shown.value.gaits[slot])) return HELD;
-    const gait = asked(shown.value.gaits[slot]);
+    const gait = gaitSource(shown.value.gaits[slot]);
     return swimmer.value && gait && JSON.stringify({ swimmer: swimmer.value.toml, gait, period: shown.value.period });
   });
   // Results during a drag come first, and requests for outdated curves are dropped.
@@ -107,10 +107,10 @@ for (const slot of [0, 1] as const) {
       const bytes = await quick.bytes("motion", { ...JSON.parse(text), intervals: INTERVALS });
       motions.value = at(motions.peek(), slot, new Float64Array(bytes));
       if (overtaken() && before) return;
-      const whole = await quick.json<Swum>("simulate", text);
+      const whole = await quick.json<SimulateOutput>("simulate", text);
       swum.value = at(swum.peek(), slot, whole);
     } catch (error) {
-      told(error);
+      showError(error);
     }
     begun.value = true;
     firstNumbers.value ??= performance.now();
@@ -124,13 +124,13 @@ for (const slot of [0, 1] as const) {
   });
   const tankAsked = computed(() => {
     if (isHeld(shown.value.gaits[slot])) return HELD;
-    const gait = asked(shown.value.gaits[slot]);
+    const gait = gaitSource(shown.value.gaits[slot]);
     const [length_m, width_m] = shown.value.tank;
     return afterFirst(swimmer.value) && gait && JSON.stringify({ swimmer: swimmer.value?.toml, gait, length_m, width_m });
   });
   const latestTank = new Latest(async (text: string) => {
-    const told = await slow.json<TankAnswer>("tank", text).catch(() => null);
-    tank.value = at(tank.peek(), slot, told);
+    const output = await slow.json<TankOutput>("tank", text).catch(() => null);
+    tank.value = at(tank.peek(), slot, output);
   });
   effect(() => {
     if (tankAsked.value) latestTank.give(tankAsked.value);
@@ -140,7 +140,7 @@ for (const slot of [0, 1] as const) {
 
 const certifyAsked = computed(() => {
   if (isHeld(activeGait(shown.value))) return HELD;
-  const gait = asked(activeGait(shown.value));
+  const gait = gaitSource(activeGait(shown.value));
   if (!afterFirst(swimmer.value) || !swimmer.value || !gait) return null;
   const { objective } = shown.value;
   const own = typeof gait === "string" && gait.includes("\n");
@@ -150,7 +150,7 @@ const certifyAsked = computed(() => {
 });
 const latestEvidence = new Latest(async (text: string) => {
   try {
-    evidence.value = { of: text, told: await slow.json<Evidence>("certify", text) };
+    evidence.value = { of: text, output: await slow.json<Evidence>("certify", text) };
   } catch {
     evidence.value = null;
   }
@@ -182,7 +182,7 @@ const latestMap = new Latest(async (text: string) => {
     curves.value = await mapLab.json<Mapped>("height-map", question);
     void warmUp();
   } catch (error) {
-    told(error);
+    showError(error);
   }
 });
 effect(() => {
@@ -220,8 +220,8 @@ const latestOptima = new Latest(async (_: number) => {
     const late = setTimeout(() => (overdue.value = true), PATIENCE_MS);
     const counting = setInterval(() => (searching.value = { what, seconds: (searching.peek()?.seconds ?? 0) + 1 }), 1000);
     const found = await search
-      .json<FoundAnswer>("optimize", of)
-      .then((told) => ({ of, told }), (error: Error) => ({ of, reason: error.message }));
+      .json<OptimizeOutput>("optimize", of)
+      .then((output) => ({ of, output }), (error: Error) => ({ of, reason: error.message }));
     clearTimeout(late);
     clearInterval(counting);
     batch(() => {
@@ -241,8 +241,8 @@ async function warmUp(): Promise<void> {
   warm = true;
   for (const what of ["displacement", "efficiency-small"] as const) {
     const of = optimumAsked(what);
-    const told = await search.json<FoundAnswer>("optimize", of).catch(() => null);
-    if (told && !optima.peek().has(what)) optima.value = new Map(optima.peek()).set(what, { of, told });
+    const output = await search.json<OptimizeOutput>("optimize", of).catch(() => null);
+    if (output && !optima.peek().has(what)) optima.value = new Map(optima.peek()).set(what, { of, output });
     for (const max_angle of WARM_BOUNDS) await search.ask("optimize", { ...JSON.parse(of), bounds: { max_angle } }).catch(() => null);
   }
 }

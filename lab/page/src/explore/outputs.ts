@@ -1,6 +1,6 @@
 // Outputs of the module, with the keys of `swimmer … --json`.
 
-export interface SwimmerAnswer {
+export interface SwimmerOutput {
   name: string;
   toml: string;
   hash: string;
@@ -29,14 +29,14 @@ export interface Net {
   speed_over_length_per_s: number;
 }
 
-export interface Swum extends Net {
+export interface SimulateOutput extends Net {
   links_cross: number;
   peak_rates_rad_s: [number, number];
   reach_rad: number;
   shortest_period_s: number | null;
 }
 
-export interface TankAnswer {
+export interface TankOutput {
   cycles: number | null;
   part: string | null;
 }
@@ -54,7 +54,7 @@ export interface Evidence {
   checks: Check[];
 }
 
-export interface FoundAnswer {
+export interface OptimizeOutput {
   displacement_over_length: number;
   displacement_m: number;
   lateral_over_length: number;

@@ -1,37 +1,37 @@
 // Results of one gait, or of two side by side, with units, and the certificate.
 
 import type { ComponentChildren } from "preact";
-import type { Swum, TankAnswer } from "./answers.ts";
+import type { SimulateOutput, TankOutput } from "./outputs.ts";
 import { edit, shown } from "./document.ts";
 import { evidence, evidenceIsStale, swum, tank, trouble } from "./model.ts";
 import { angle, condition, figure, length, rate } from "./names.ts";
 
-type Told = { swum: Swum; tank: TankAnswer | null };
-interface Line {
+type GaitResults = { swum: SimulateOutput; tank: TankOutput | null };
+interface Row {
   name: string;
   /** The quantity in words, before its symbol. */
   words: string;
   about: string;
-  tell(told: Told): ComponentChildren;
+  value(results: GaitResults): ComponentChildren;
 }
 
-const LINES: readonly Line[] = [
-  { name: "X/L", words: "displacement", about: "Displacement of a cycle along the first heading, over the length", tell: ({ swum }) => figure(swum.displacement_over_length, 6) },
-  { name: "X", words: "displacement", about: "Displacement of a cycle", tell: ({ swum }) => length(swum.displacement_m) },
-  { name: "Y/L", words: "sideways", about: "Displacement across the first heading, over the length", tell: ({ swum }) => figure(swum.lateral_over_length, 6) },
-  { name: "θ", words: "rotation", about: "Rotation of a cycle", tell: ({ swum }) => angle(swum.rotation_rad) },
-  { name: "ξ", words: "efficiency", about: "Lighthill efficiency as parametrised", tell: ({ swum }) => figure(swum.efficiency, 6) },
-  { name: "ξ, constant power", words: "efficiency at constant power", about: "Lighthill efficiency of the same curve at constant power", tell: ({ swum }) => figure(swum.efficiency_constant_power, 6) },
-  { name: "speed", words: "", about: "Net displacement over the period", tell: ({ swum }) => `${figure(swum.speed_m_per_s * 1000, 3)} mm/s` },
-  { name: "peak rates", words: "", about: "Largest joint rates in the period", tell: ({ swum }) => `${swum.peak_rates_rad_s.map(rate).join(", ")}` },
-  { name: "reach", words: "", about: "Largest joint angle", tell: ({ swum }) => angle(swum.reach_rad) },
-  { name: "shortest period", words: "", about: "What the servos' rate allows as parametrised", tell: ({ swum }) => (swum.shortest_period_s === null ? "–" : `${figure(swum.shortest_period_s, 2)} s`) },
-  { name: "tank", words: "", about: "Cycles from the middle of the tank to a wall", tell: ({ tank }) => (tank ? (tank.cycles === null ? "no wall met" : `${figure(tank.cycles, 1)} cycles`) : "–") },
-  { name: "links cross", words: "", about: "Share of the cycle in which links cross", tell: ({ swum }) => (swum.links_cross > 0 ? `${figure(swum.links_cross * 100, 1)} %` : "never") },
+const ROWS: readonly Row[] = [
+  { name: "X/L", words: "displacement", about: "Displacement of a cycle along the first heading, over the length", value: ({ swum }) => figure(swum.displacement_over_length, 6) },
+  { name: "X", words: "displacement", about: "Displacement of a cycle", value: ({ swum }) => length(swum.displacement_m) },
+  { name: "Y/L", words: "sideways", about: "Displacement across the first heading, over the length", value: ({ swum }) => figure(swum.lateral_over_length, 6) },
+  { name: "θ", words: "rotation", about: "Rotation of a cycle", value: ({ swum }) => angle(swum.rotation_rad) },
+  { name: "ξ", words: "efficiency", about: "Lighthill efficiency as parametrised", value: ({ swum }) => figure(swum.efficiency, 6) },
+  { name: "ξ, constant power", words: "efficiency at constant power", about: "Lighthill efficiency of the same curve at constant power", value: ({ swum }) => figure(swum.efficiency_constant_power, 6) },
+  { name: "speed", words: "", about: "Net displacement over the period", value: ({ swum }) => `${figure(swum.speed_m_per_s * 1000, 3)} mm/s` },
+  { name: "peak rates", words: "", about: "Largest joint rates in the period", value: ({ swum }) => `${swum.peak_rates_rad_s.map(rate).join(", ")}` },
+  { name: "reach", words: "", about: "Largest joint angle", value: ({ swum }) => angle(swum.reach_rad) },
+  { name: "shortest period", words: "", about: "What the servos' rate allows as parametrised", value: ({ swum }) => (swum.shortest_period_s === null ? "–" : `${figure(swum.shortest_period_s, 2)} s`) },
+  { name: "tank", words: "", about: "Cycles from the middle of the tank to a wall", value: ({ tank }) => (tank ? (tank.cycles === null ? "no wall met" : `${figure(tank.cycles, 1)} cycles`) : "–") },
+  { name: "links cross", words: "", about: "Share of the cycle in which links cross", value: ({ swum }) => (swum.links_cross > 0 ? `${figure(swum.links_cross * 100, 1)} %` : "never") },
 ];
 
 export function Readout() {
-  const both = swum.value.map((told, slot) => (told ? { swum: told, tank: tank.value[slot as 0 | 1] } : null));
+  const both = swum.value.map((results, slot) => (results ? { swum: results, tank: tank.value[slot as 0 | 1] } : null));
   const compared = shown.value.gaits[1] !== null;
   return (
     <section class="card" aria-label="What a cycle brings">
@@ -49,11 +49,11 @@ export function Readout() {
           </thead>
         )}
         <tbody>
-          {LINES.map(({ name, words, about, tell }) => (
+          {ROWS.map(({ name, words, about, value }) => (
             <tr key={name} title={about}>
               <th scope="row">{words && `${words} `}{words ? <i>{name.split(",")[0]}</i> : name}</th>
-              {both.slice(0, compared ? 2 : 1).map((told, slot) => (
-                <td key={slot} data-name={name} data-slot={slot}>{told ? tell(told) : "…"}</td>
+              {both.slice(0, compared ? 2 : 1).map((results, slot) => (
+                <td key={slot} data-name={name} data-slot={slot}>{results ? value(results) : "…"}</td>
               ))}
             </tr>
           ))}
@@ -69,21 +69,21 @@ export function Readout() {
 const VERDICTS = { pass: "holds every condition", fail: "no optimum", undecided: "undecided from these samples" };
 
 function Certificate() {
-  const told = evidence.value?.told;
-  if (!told) return <p class="certificate stale">Certificate: …</p>;
-  const failed = told.checks.filter((check) => !check.pass).length;
+  const output = evidence.value?.output;
+  if (!output) return <p class="certificate stale">Certificate: …</p>;
+  const failed = output.checks.filter((check) => !check.pass).length;
   return (
-    <details class={`certificate ${told.verdict} ${evidenceIsStale.value ? "stale" : ""}`}>
+    <details class={`certificate ${output.verdict} ${evidenceIsStale.value ? "stale" : ""}`}>
       <summary>
-        Certificate: {VERDICTS[told.verdict]}
-        {failed > 0 && ` (${failed} of ${told.checks.length} fail)`}
+        Certificate: {VERDICTS[output.verdict]}
+        {failed > 0 && ` (${failed} of ${output.checks.length} fail)`}
       </summary>
       <table>
         <thead>
           <tr><th scope="col">condition</th><th scope="col">number</th><th scope="col">tolerance</th></tr>
         </thead>
         <tbody>
-          {told.checks.map(({ name, value, tolerance, pass }) => (
+          {output.checks.map(({ name, value, tolerance, pass }) => (
             <tr key={name} title={name} class={pass ? "" : "failed"}>
               <th scope="row">{pass ? "✓" : "✗"} {condition(name)}</th>
               <td>{value.toExponential(1)}</td>

@@ -3,12 +3,12 @@
 import { applyPalette, GIFEncoder, quantize } from "gifenc";
 import { download } from "../files/download.ts";
 import { activeGait, shown } from "./document.ts";
-import { asked, INTERVALS, motions, quick, swimmer } from "./model.ts";
+import { gaitSource, INTERVALS, motions, quick, swimmer } from "./model.ts";
 import { CYCLES, picture } from "./swimming.tsx";
 
 /** Gait file, as `swimmer … -o` writes it; `swimmer simulate` gives the same motion. */
 export async function saveGait(): Promise<void> {
-  const gait = asked(activeGait(shown.value));
+  const gait = gaitSource(activeGait(shown.value));
   if (!swimmer.value || !gait) throw new Error("saving the gait: it is still being looked for");
   const bytes = await quick.bytes("gait-file", { swimmer: swimmer.value.toml, gait });
   download("gait.txt", bytes, "text/plain");

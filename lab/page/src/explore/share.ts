@@ -32,9 +32,9 @@ export async function unpacked(text: string): Promise<Document> {
 }
 
 /** Valid values of a link; other values have their defaults. A link is untrusted input. */
-export function sound(told: unknown): Document {
-  if (typeof told !== "object" || told === null) return FIRST;
-  const from = told as Record<string, unknown>;
+export function sound(value: unknown): Document {
+  if (typeof value !== "object" || value === null) return FIRST;
+  const from = value as Record<string, unknown>;
   const number = (value: unknown, [low, high]: [number, number], otherwise: number) =>
     typeof value === "number" && value >= low && value <= high ? value : otherwise;
   const choice = <T>(value: unknown, all: readonly T[], otherwise: T) => (all.includes(value as T) ? (value as T) : otherwise);
@@ -59,9 +59,9 @@ export function sound(told: unknown): Document {
   };
 }
 
-function gaitOf(told: unknown): Gait | null {
-  if (typeof told !== "object" || told === null) return null;
-  const from = told as Record<string, unknown>;
+function gaitOf(value: unknown): Gait | null {
+  if (typeof value !== "object" || value === null) return null;
+  const from = value as Record<string, unknown>;
   if (from["kind"] === "optimum" && OPTIMA.includes(from["what"] as Optimum)) return { kind: "optimum", what: from["what"] as Optimum };
   if (from["kind"] === "text" && typeof from["text"] === "string") return { kind: "text", name: String(from["name"] ?? "gait"), text: from["text"] };
   const points = from["points"];
@@ -72,11 +72,11 @@ function gaitOf(told: unknown): Gait | null {
 
 /** Link format of reports: the values of the document that differ from the defaults, as plain JSON. */
 function openPlain(): void {
-  const told = fragment().get(PLAIN);
-  if (!told) return;
+  const value = fragment().get(PLAIN);
+  if (!value) return;
   setFragment(PLAIN, undefined);
   try {
-    shown.value = sound(JSON.parse(told));
+    shown.value = sound(JSON.parse(value));
   } catch {
     // A truncated link opens the default view.
   }
@@ -84,8 +84,8 @@ function openPlain(): void {
 
 /** Opens the document of the fragment, then updates the fragment shortly after each change. */
 export async function followFragment(): Promise<void> {
-  const told = fragment().get(KEY);
-  if (told) shown.value = await unpacked(told).catch(() => FIRST);
+  const value = fragment().get(KEY);
+  if (value) shown.value = await unpacked(value).catch(() => FIRST);
   else openPlain();
   let timer = 0;
   effect(() => {

@@ -28,13 +28,13 @@ const FORMAT = "swimmer-sweep-map 1";
 
 /** Reads an export; throws an error message of one sentence. */
 export function readMap(text: string): SweepMap {
-  let told: unknown;
+  let parsed: unknown;
   try {
-    told = JSON.parse(text);
+    parsed = JSON.parse(text);
   } catch {
     throw new Error("this is no JSON; open what `swimmer sweep map --export` wrote");
   }
-  const from = told as Partial<SweepMap> & { format?: unknown };
+  const from = parsed as Partial<SweepMap> & { format?: unknown };
   if (from?.format !== FORMAT) throw new Error(`its format is ${JSON.stringify(from?.format)}, and this page reads "${FORMAT}"`);
   const { axes, quantities } = from;
   if (!Array.isArray(axes) || axes.length !== 2 || !axes.every((axis) => Array.isArray(axis?.values) && axis.values.length > 0)) {

@@ -118,7 +118,7 @@ function Cells({ map, values, low, high }: CellsProps) {
   return (
     <div class="sweep-map">
       <span class="up">{spoken(up.name)}{up.unit && ` [${up.unit}]`}</span>
-      <span class="ends up-ends"><span>{told(up.values.at(-1))}</span><span>{told(up.values[0])}</span></span>
+      <span class="ends up-ends"><span>{rounded(up.values.at(-1))}</span><span>{rounded(up.values[0])}</span></span>
       <div class="cells" tabIndex={0} role="application" aria-label="Designs; arrow keys go from one to the next" onPointerMove={point} onPointerDown={point} onKeyDown={step}>
         <canvas ref={canvas} id="cells" aria-hidden="true" />
         <svg viewBox={`0 0 ${columns} ${rows}`} preserveAspectRatio="none" aria-hidden="true">
@@ -128,13 +128,13 @@ function Cells({ map, values, low, high }: CellsProps) {
           {pointed.value && <rect class="pointed" x={pointed.value[0]} y={rows - 1 - pointed.value[1]} width={1} height={1} />}
         </svg>
       </div>
-      <span class="ends across-ends"><span>{told(across.values[0])}</span><span>{told(across.values.at(-1))}</span></span>
+      <span class="ends across-ends"><span>{rounded(across.values[0])}</span><span>{rounded(across.values.at(-1))}</span></span>
       <span class="across">{spoken(across.name)}{across.unit && ` [${across.unit}]`}</span>
     </div>
   );
 }
 
-const told = (value: number | undefined) => (value === undefined ? "" : `${Number(value.toPrecision(4))}`);
+const rounded = (value: number | undefined) => (value === undefined ? "" : `${Number(value.toPrecision(4))}`);
 
 /** Position of a value in units of cells; the value of a cell is at its centre. */
 export function place(values: readonly number[], value: number): number {
@@ -150,7 +150,7 @@ function Pointed({ map }: { map: SweepMap }) {
   if (!pointed.value) return <p class="soft">Point at a design to read it.</p>;
   const [i, j] = pointed.value;
   const lines: [string, string][] = [
-    ...map.axes.map((axis, k): [string, string] => [spoken(axis.name), `${told(axis.values[k === 0 ? i : j])} ${axis.unit}`]),
+    ...map.axes.map((axis, k): [string, string] => [spoken(axis.name), `${rounded(axis.values[k === 0 ? i : j])} ${axis.unit}`]),
     ...map.quantities.map(({ name, unit, values }): [string, string] => {
       const value = values[j]?.[i];
       return [spoken(name), value === null || value === undefined ? "–" : `${Number(value.toPrecision(6))} ${unit}`];

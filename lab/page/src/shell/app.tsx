@@ -5,20 +5,20 @@ import { useEffect } from "preact/hooks";
 import { EStop, RobotBar } from "../drive/bar.tsx";
 import { link } from "../drive/robot.ts";
 import { opened, openRoom } from "./open.ts";
-import { ROOMS } from "./rooms.tsx";
+import { TABS } from "./tabs.tsx";
 import { ThemeToggle } from "./theme.tsx";
 
-const open = computed(() => ROOMS.find((room) => room.id === opened.value)?.id ?? ROOMS[0]?.id ?? "");
+const open = computed(() => TABS.find((tab) => tab.id === opened.value)?.id ?? TABS[0]?.id ?? "");
 const visited = new Set<string>();
 
 export function App() {
   useEffect(() => {
     const onKey = (event: KeyboardEvent) => {
-      const room = event.altKey && ROOMS.find(({ key }) => key === event.key);
-      if (!room) return;
+      const tab = event.altKey && TABS.find(({ key }) => key === event.key);
+      if (!tab) return;
       event.preventDefault();
-      openRoom(room.id);
-      document.getElementById(`tab-${room.id}`)?.focus();
+      openRoom(tab.id);
+      document.getElementById(`tab-${tab.id}`)?.focus();
     };
     window.addEventListener("keydown", onKey);
     return () => window.removeEventListener("keydown", onKey);
@@ -32,13 +32,13 @@ export function App() {
         </span>
         <h1>swimmer lab</h1>
         <div role="tablist" aria-label="Rooms" class="tabs" onKeyDown={moveAlong}>
-          {ROOMS.map(({ id, name, about, key }) => (
+          {TABS.map(({ id, name, about, key }) => (
             <button
               key={id}
               id={`tab-${id}`}
               role="tab"
               aria-selected={open.value === id}
-              aria-controls={`room-${id}`}
+              aria-controls={`tab-${id}`}
               tabIndex={open.value === id ? 0 : -1}
               title={`${about} (Alt+${key})`}
               onClick={() => openRoom(id)}
@@ -54,8 +54,8 @@ export function App() {
         <RobotBar />
       </header>
       <main>
-        {ROOMS.filter(({ id }) => visited.has(id)).map(({ id, Panel }) => (
-          <div key={id} id={`room-${id}`} class="panel" role="tabpanel" aria-labelledby={`tab-${id}`} hidden={open.value !== id}>
+        {TABS.filter(({ id }) => visited.has(id)).map(({ id, Panel }) => (
+          <div key={id} id={`tab-${id}`} class="panel" role="tabpanel" aria-labelledby={`tab-${id}`} hidden={open.value !== id}>
             <Panel />
           </div>
         ))}
@@ -71,9 +71,9 @@ function moveAlong(event: KeyboardEvent): void {
   const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
   if (!step) return;
   event.preventDefault();
-  const at = ROOMS.findIndex(({ id }) => id === open.value);
-  const room = ROOMS[(at + step + ROOMS.length) % ROOMS.length];
-  if (!room) return;
-  openRoom(room.id);
-  document.getElementById(`tab-${room.id}`)?.focus();
+  const at = TABS.findIndex(({ id }) => id === open.value);
+  const tab = TABS[(at + step + TABS.length) % TABS.length];
+  if (!tab) return;
+  openRoom(tab.id);
+  document.getElementById(`tab-${tab.id}`)?.focus();
 }

@@ -6,7 +6,7 @@ import { Drive } from "../drive/drive.tsx";
 import { Explore } from "../explore/explore.tsx";
 import { Maps } from "../maps/maps.tsx";
 
-export interface Room {
+export interface Tab {
   /** Name in the fragment of the URL. */
   id: string;
   name: string;
@@ -17,7 +17,7 @@ export interface Room {
   Panel: ComponentType;
 }
 
-export const ROOMS: readonly Room[] = [
+export const TABS: readonly Tab[] = [
   { id: "explore", name: "Explore", about: "Drag a gait over the height map and watch it swim.", key: "1", Panel: Explore },
   { id: "drive", name: "Drive", about: "Connect the robot, upload the gait, play and stop.", key: "2", Panel: Drive },
   { id: "calibrate", name: "Calibrate", about: "Fit drag and sphere to tracking files.", key: "3", Panel: Calibrate },

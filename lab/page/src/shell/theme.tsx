@@ -8,8 +8,8 @@ const KEY = "swimmer-lab-theme";
 
 function remembered(): Theme {
   try {
-    const told = localStorage.getItem(KEY);
-    return told === "light" || told === "dark" ? told : "system";
+    const stored = localStorage.getItem(KEY);
+    return stored === "light" || stored === "dark" ? stored : "system";
   } catch {
     return "system"; // a page from disk may be denied storage
   }

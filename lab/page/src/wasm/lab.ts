@@ -3,7 +3,7 @@
 import { signal, untracked } from "@preact/signals";
 import source from "worker:./worker.ts";
 import { type ModuleName, startWorker } from "./embedded.ts";
-import type { Told } from "./worker.ts";
+import type { CallReply } from "./worker.ts";
 
 /** Number of pending calls of all workers. */
 export const waiting = signal(0);
@@ -17,7 +17,7 @@ function timed(name: string, milliseconds: number): void {
 }
 
 interface Waiting {
-  answered(told: Told): void;
+  answered(reply: CallReply): void;
 }
 
 /** Worker with its own module. Long searches have their own worker, so that dragging does not wait for them. */
@@ -31,7 +31,7 @@ export class Lab {
   /** The worker, started at the first call. */
   #worker(): Promise<Worker> {
     this.#started ??= startWorker(source, this.module).then((worker) => {
-      worker.onmessage = ({ data }: MessageEvent<Told>) => {
+      worker.onmessage = ({ data }: MessageEvent<CallReply>) => {
         this.#waiting.get(data.id)?.answered(data);
         this.#waiting.delete(data.id);
       };
@@ -41,16 +41,16 @@ export class Lab {
   }
 
   /** Performs a call; a failure throws an error with its reason. */
-  ask(name: string, question: unknown): Promise<Told> {
+  ask(name: string, question: unknown): Promise<CallReply> {
     const id = ++this.#last;
     waiting.value++;
-    const answer = new Promise<Told>((resolve, reject) => {
+    const answer = new Promise<CallReply>((resolve, reject) => {
       this.#waiting.set(id, {
-        answered: (told) => {
-          if ("reason" in told) reject(new Error(told.reason));
+        answered: (reply) => {
+          if ("reason" in reply) reject(new Error(reply.reason));
           else {
-            timed(name, told.milliseconds);
-            resolve(told);
+            timed(name, reply.milliseconds);
+            resolve(reply);
           }
         },
       });
@@ -69,15 +69,15 @@ export class Lab {
   }
 
   async json<T>(name: string, question: unknown): Promise<T> {
-    const told = await this.ask(name, question);
-    if (!("json" in told)) throw new Error(`${name}: bytes where a document was expected`);
-    return told.json as T;
+    const reply = await this.ask(name, question);
+    if (!("json" in reply)) throw new Error(`${name}: bytes where a document was expected`);
+    return reply.json as T;
   }
 
   async bytes(name: string, question: unknown): Promise<ArrayBuffer> {
-    const told = await this.ask(name, question);
-    if (!("bytes" in told)) throw new Error(`${name}: a document where bytes were expected`);
-    return told.bytes;
+    const reply = await this.ask(name, question);
+    if (!("bytes" in reply)) throw new Error(`${name}: a document where bytes were expected`);
+    return reply.bytes;
   }
 }
 

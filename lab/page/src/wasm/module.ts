@@ -9,7 +9,7 @@ interface Exports {
 }
 
 /** Output of a call: a JSON document, or bytes owned by the caller. */
-export type Answer = { json: unknown } | { bytes: Uint8Array<ArrayBuffer> };
+export type CallOutput = { json: unknown } | { bytes: Uint8Array<ArrayBuffer> };
 
 const BYTES = 1;
 const REASON = 2;
@@ -31,16 +31,16 @@ export class Module {
 
   /** Performs a call by name; `question` is bytes, a JSON text, or a value to be encoded as JSON. Throws an error message of one
   * sentence. */
-  call(name: string, question: unknown): Answer {
+  call(name: string, question: unknown): CallOutput {
     const called = this.#encoder.encode(name);
-    const asked = question instanceof Uint8Array ? question : this.#encoder.encode(typeof question === "string" ? question : JSON.stringify(question));
-    const length = called.length + asked.length;
+    const encoded = question instanceof Uint8Array ? question : this.#encoder.encode(typeof question === "string" ? question : JSON.stringify(question));
+    const length = called.length + encoded.length;
     const place = this.#exports.lab_input(length);
-    const room = new Uint8Array(this.#exports.memory.buffer, place, length);
-    room.set(called);
-    room.set(asked, called.length);
-    const answered = this.#exports.lab_call(called.length, asked.length);
-    const bytes = new Uint8Array(this.#exports.memory.buffer, this.#exports.lab_output(), answered).slice();
+    const input = new Uint8Array(this.#exports.memory.buffer, place, length);
+    input.set(called);
+    input.set(encoded, called.length);
+    const outputLength = this.#exports.lab_call(called.length, encoded.length);
+    const bytes = new Uint8Array(this.#exports.memory.buffer, this.#exports.lab_output(), outputLength).slice();
     const kind = this.#exports.lab_kind();
     if (kind === BYTES) return { bytes };
     const text = this.#decoder.decode(bytes);

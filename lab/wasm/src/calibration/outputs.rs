@@ -10,7 +10,7 @@ use swimmer_files::{Campaign, GaitSpec};
 
 /// Output of the fit.
 #[derive(Serialize)]
-pub(super) struct FitAnswer {
+pub(super) struct FitOutput {
     /// Number by which the later steps refer to the fit.
     number: u32,
     runs: Vec<Run>,
@@ -115,7 +115,7 @@ impl Run {
     }
 }
 
-impl FitAnswer {
+impl FitOutput {
     pub(super) fn new(found: &CampaignFit, campaign: &Campaign, data: &CampaignData) -> Self {
         let fit = &found.fit;
         Self {
@@ -162,14 +162,14 @@ impl FitAnswer {
 
 /// Output of a fit with additional parameters, like `further` of the command.
 #[derive(Serialize)]
-pub(super) struct FurtherAnswer<'a> {
+pub(super) struct NuisanceOutput<'a> {
     #[serde(flatten)]
     fit: &'a FurtherFit,
     /// Swimmer file with the fitted values for which it has keys.
     swimmer: String,
 }
 
-impl<'a> FurtherAnswer<'a> {
+impl<'a> NuisanceOutput<'a> {
     pub(super) fn new(fit: &'a FurtherFit) -> Self {
         Self {
             fit,
@@ -180,7 +180,7 @@ impl<'a> FurtherAnswer<'a> {
 
 /// Evidence for the fit.
 #[derive(Serialize)]
-pub(super) struct EvidenceAnswer<'a> {
+pub(super) struct EvidenceOutput<'a> {
     /// Content of the command's `evidence.json`.
     #[serde(flatten)]
     document: EvidenceDocument<'a>,
@@ -212,7 +212,7 @@ impl From<&CurvePoint> for CurveAnswer {
     }
 }
 
-impl<'a> EvidenceAnswer<'a> {
+impl<'a> EvidenceOutput<'a> {
     /// `names` are the runs' files.
     pub(super) fn new(evidence: &'a Evidence, names: &'a [String]) -> Self {
         let bootstrap = evidence.bootstrap.as_ref();

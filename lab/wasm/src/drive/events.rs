@@ -5,7 +5,7 @@ use link_protocol::{HelloReply, Telemetry};
 use serde_json::{Value, json};
 
 /// Event as JSON; a connection includes the description of the robot.
-pub(super) fn event(event: &Event, hello: Option<&HelloReply>) -> Value {
+pub(super) fn event_json(event: &Event, hello: Option<&HelloReply>) -> Value {
     match event {
         Event::Connected { ticket, restarted } => {
             json!({ "event": "connected", "ticket": ticket.number(), "restarted": restarted, "hello": hello })
@@ -30,11 +30,8 @@ pub(super) fn event(event: &Event, hello: Option<&HelloReply>) -> Value {
         Event::Failed { ticket, error } => {
             json!({ "event": "failed", "ticket": ticket.number(), "reason": error.to_string() })
         }
-        Event::Telemetry {
-            telemetry: told,
-            at,
-        } => {
-            let mut value = telemetry(told);
+        Event::Telemetry { telemetry, at } => {
+            let mut value = telemetry_json(telemetry);
             value["at_s"] = json!(at.as_secs_f64());
             value
         }
@@ -42,6 +39,6 @@ pub(super) fn event(event: &Event, hello: Option<&HelloReply>) -> Value {
 }
 
 /// Telemetry as JSON, with state and flags in words.
-pub(super) fn telemetry(told: &Telemetry) -> Value {
-    json!({ "event": "telemetry", "telemetry": told })
+pub(super) fn telemetry_json(telemetry: &Telemetry) -> Value {
+    json!({ "event": "telemetry", "telemetry": telemetry })
 }

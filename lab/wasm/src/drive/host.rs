@@ -14,8 +14,8 @@ use serde_json::json;
 use swimmer_files::{LinkFrame, link_log_bytes, parse_key};
 
 use super::memory_port::MemoryPort;
-use super::{Numbered, Opened, seconds_of, step_of, told};
-use crate::calls::{Answer, Lab, Outcome, json, parsed};
+use super::{Numbered, Opened, events as event_document, seconds_of, step_of};
+use crate::calls::{CallOutput, Lab, Outcome, json, parsed};
 
 /// Largest number of frames in a log, about two hours of play; older frames are dropped.
 const LONGEST_LOG: usize = 400_000;
@@ -50,13 +50,13 @@ struct Open {
 
 /// Opens a session without sending the greeting.
 pub(super) fn open(lab: &mut Lab, bytes: &[u8]) -> Outcome {
-    let asked: Open = parsed(bytes)?;
-    let key = asked
+    let request: Open = parsed(bytes)?;
+    let key = request
         .key
         .as_deref()
         .map(|text| parse_key(text).map_err(|problem| format!("reading the key{problem}")))
         .transpose()?;
-    let epoch = seconds_of(asked.epoch_s)?;
+    let epoch = seconds_of(request.epoch_s)?;
     let (passes, passed) = mpsc::channel();
     let sink: Sink = Box::new(move |frame| {
         let at = epoch + frame.at;
@@ -70,9 +70,9 @@ pub(super) fn open(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     });
     let host = Host {
         session: Session::new(SessionConfig {
-            bytes_per_second: asked.bytes_per_second,
+            bytes_per_second: request.bytes_per_second,
             key,
-            ..SessionConfig::new(asked.seed)
+            ..SessionConfig::new(request.seed)
         }),
         port: TracedPort::new(MemoryPort::default(), sink),
         passed,
@@ -92,17 +92,17 @@ pub(super) fn step(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let sent = host.step(now, received)?;
     let mut events = Vec::new();
     while let Some(event) = host.session.next_event() {
-        events.push(told::event(&event, host.session.hello()));
+        events.push(event_document::event_json(&event, host.session.hello()));
     }
     let next = host
         .session
         .next_deadline()
         .map(|deadline| deadline.as_secs_f64());
-    let told = json!({ "events": events, "next_s": next }).to_string();
+    let document = json!({ "events": events, "next_s": next }).to_string();
     let count = u32::try_from(sent.len())
         .map_err(|_| "stepping: too much to be sent at once".to_owned())?;
-    Ok(Answer::Bytes(
-        [&count.to_le_bytes(), sent.as_slice(), told.as_bytes()].concat(),
+    Ok(CallOutput::Bytes(
+        [&count.to_le_bytes(), sent.as_slice(), document.as_bytes()].concat(),
     ))
 }
 
@@ -136,7 +136,7 @@ impl Host {
 
 /// Session and time of a request.
 #[derive(Deserialize)]
-struct At {
+struct SessionTime {
     number: u32,
     now_s: f64,
 }
@@ -147,13 +147,13 @@ fn ticket(ticket: Ticket) -> Outcome {
 
 /// Greets the robot.
 pub(super) fn connect(lab: &mut Lab, bytes: &[u8]) -> Outcome {
-    let At { number, now_s } = parsed(bytes)?;
+    let SessionTime { number, now_s } = parsed(bytes)?;
     let host: &mut Host = lab.kept.get(number)?;
     ticket(host.session.connect(seconds_of(now_s)?))
 }
 
 #[derive(Deserialize)]
-struct Asked {
+struct RobotRequest {
     number: u32,
     now_s: f64,
     request: Request,
@@ -161,7 +161,7 @@ struct Asked {
 
 /// Sends a request to the robot, given as JSON of the link protocol (`"Stop"`, `{"ClearEStop": {"count": 1}}`).
 pub(super) fn request(lab: &mut Lab, bytes: &[u8]) -> Outcome {
-    let Asked {
+    let RobotRequest {
         number,
         now_s,
         request,
@@ -193,7 +193,7 @@ pub(super) fn upload(lab: &mut Lab, bytes: &[u8]) -> Outcome {
 
 /// Cancels an upload.
 pub(super) fn cancel_upload(lab: &mut Lab, bytes: &[u8]) -> Outcome {
-    let At { number, .. } = parsed(bytes)?;
+    let SessionTime { number, .. } = parsed(bytes)?;
     lab.kept.get::<Host>(number)?.session.cancel_upload();
     json(&json!({}))
 }
@@ -218,6 +218,6 @@ pub(super) fn log(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let Numbered { number } = parsed(bytes)?;
     let host: &mut Host = lab.kept.get(number)?;
     link_log_bytes(&host.log)
-        .map(Answer::Bytes)
+        .map(CallOutput::Bytes)
         .map_err(|why| why.to_string())
 }

@@ -3,7 +3,7 @@
 use link_protocol::{Decoder, Message};
 use serde_json::{Value, json};
 
-use super::{Opened, step_of, told};
+use super::{Opened, events, step_of};
 use crate::calls::{Lab, Outcome, json};
 
 /// Opens a decoder.
@@ -20,8 +20,8 @@ pub(super) fn step(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let events: Vec<Value> = received
         .iter()
         .filter_map(|byte| match decoder.push(*byte)?.message {
-            Ok(Message::Telemetry(told)) => {
-                let mut event = told::telemetry(&told);
+            Ok(Message::Telemetry(telemetry)) => {
+                let mut event = events::telemetry_json(&telemetry);
                 event["at_s"] = json!(now.as_secs_f64());
                 Some(event)
             }

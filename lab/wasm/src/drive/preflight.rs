@@ -12,7 +12,7 @@ use crate::input::SwimmerText;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Asked {
+struct ForecastRequest {
     swimmer: SwimmerText,
     gait: GaitSource,
     /// Period of a cycle.
@@ -30,10 +30,10 @@ struct Connected {
 
 /// Computes the forecast of a gait.
 pub(super) fn preflight(_lab: &mut Lab, bytes: &[u8]) -> Outcome {
-    let asked: Asked = parsed(bytes)?;
-    let (file, model) = asked.swimmer.model()?;
+    let request: ForecastRequest = parsed(bytes)?;
+    let (file, model) = request.swimmer.model()?;
     let servo = file.servo.unwrap_or_default();
-    let servos = match &asked.robot {
+    let servos = match &request.robot {
         None => Servos::on_the_robot(servo),
         Some(Connected {
             hello,
@@ -42,33 +42,33 @@ pub(super) fn preflight(_lab: &mut Lab, bytes: &[u8]) -> Outcome {
     };
     let played = Played {
         servos,
-        period: asked.period_s,
+        period: request.period_s,
         knots: MAX_KNOTS,
     };
-    let gait = asked.gait.read(Files::Unavailable)?;
-    let told = forecast(&model, &gait, &played).map_err(|why| why.to_string())?;
+    let gait = request.gait.read(Files::Unavailable)?;
+    let predicted = forecast(&model, &gait, &played).map_err(|why| why.to_string())?;
     let crc32 = table(&gait, MAX_KNOTS)
         .map(|table| crc32c(table.bytes()))
         .map_err(|why| why.to_string())?;
-    let played = told.ends().map(|(_, played)| *played);
-    let losses: Vec<Value> = told
+    let played = predicted.ends().map(|(_, played)| *played);
+    let losses: Vec<Value> = predicted
         .stages
         .iter()
-        .map(|stage| json!({ "by": stage.stage.word(), "loss_share": told.share(stage.loss) }))
+        .map(|stage| json!({ "by": stage.stage.word(), "loss_share": predicted.share(stage.loss) }))
         .collect();
     json(&json!({
         // Checksum of the table that an upload sends; the robot reports the checksum of its own table.
         "crc32": crc32,
-        "period_s": asked.period_s,
-        "min_period_s": told.verdict.min_period,
+        "period_s": request.period_s,
+        "min_period_s": predicted.verdict.min_period,
         "displacement_m": played.map(|played| [played.displacement.x, played.displacement.y]),
         "rotation_rad": played.map(|played| played.rotation),
-        "loss_share": told.share(told.total_loss()),
+        "loss_share": predicted.share(predicted.total_loss()),
         "losses": losses,
-        "refused": told.refusal(),
-        "warnings": told.warnings(),
+        "refused": predicted.refusal(),
+        "warnings": predicted.warnings(),
         // `true` if the values of a good servo are assumed.
         "servo_assumed": file.servo.is_none(),
-        "configured_as": asked.robot.map(|robot| is_configured_as(&robot.configuration, &file.swimmer)),
+        "configured_as": request.robot.map(|robot| is_configured_as(&robot.configuration, &file.swimmer)),
     }))
 }

@@ -8,7 +8,7 @@ use serde_json::json;
 use twin::{Twin, TwinConfig, VirtualRobot as _};
 
 use super::{Numbered, Opened, step_of};
-use crate::calls::{Answer, Lab, Outcome, json, parsed};
+use crate::calls::{CallOutput, Lab, Outcome, json, parsed};
 use crate::input::SwimmerText;
 
 /// Bytes per second of the line, as for a real robot.
@@ -49,7 +49,7 @@ pub(super) fn step(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     if !received.is_empty() {
         robot.twin.receive(received);
     }
-    Ok(Answer::Bytes(robot.transmit(now)))
+    Ok(CallOutput::Bytes(robot.transmit(now)))
 }
 
 impl Robot {

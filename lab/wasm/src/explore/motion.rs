@@ -8,7 +8,7 @@ use crate::calls::{Lab, Outcome, numbers, parsed};
 use crate::input::SwimmerText;
 
 #[derive(Deserialize)]
-struct Asked {
+struct MotionRequest {
     swimmer: SwimmerText,
     gait: GaitSource,
     /// Number of equal steps of u.
@@ -19,10 +19,10 @@ struct Asked {
 /// the back tip to the front tip; and for the back, the middle and the front link the force per length (over μ, for a cycle of one
 /// second) at both ends. In metres, as seen from the tank; the pose starts at the origin along x.
 pub(super) fn motion(_: &mut Lab, bytes: &[u8]) -> Outcome {
-    let asked: Asked = parsed(bytes)?;
-    let (_, model) = asked.swimmer.model()?;
-    let gait = asked.gait.read(Files::Unavailable)?;
-    let intervals = asked.intervals.clamp(1, 10_000);
+    let request: MotionRequest = parsed(bytes)?;
+    let (_, model) = request.swimmer.model()?;
+    let gait = request.gait.read(Files::Unavailable)?;
+    let intervals = request.intervals.clamp(1, 10_000);
     let mut out = Vec::with_capacity(26 * (intervals + 1));
     trajectory(&model, &gait, &Tolerance::default(), intervals, |point| {
         let (phi, pose) = (point.phi, point.pose);

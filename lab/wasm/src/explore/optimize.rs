@@ -11,9 +11,9 @@ use crate::calls::{Lab, Outcome, json, parsed};
 use crate::input::SwimmerText;
 
 #[derive(Deserialize)]
-struct Asked {
+struct OptimizeRequest {
     swimmer: SwimmerText,
-    what: What,
+    what: Optimum,
     #[serde(default)]
     bounds: BoundsRequest,
     /// Largest rate for `speed` \[rad/s\]; default: that of the swimmer's servos.
@@ -22,7 +22,7 @@ struct Asked {
 
 #[derive(Clone, Copy, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-enum What {
+enum Optimum {
     Displacement,
     EfficiencySmall,
     EfficiencyLarge,
@@ -32,7 +32,7 @@ enum What {
 }
 
 #[derive(Serialize)]
-struct Found {
+struct OptimizeOutput {
     /// |d|/L of the fastest gait, otherwise X/L.
     displacement_over_length: f64,
     displacement_m: f64,
@@ -54,9 +54,9 @@ struct Found {
 
 /// Finds an optimum.
 pub(super) fn optimize(_: &mut Lab, bytes: &[u8]) -> Outcome {
-    let asked: Asked = parsed(bytes)?;
-    let file = asked.swimmer.read()?;
-    let (swimmer, bounds) = (file.swimmer, asked.bounds.of(&file));
+    let request: OptimizeRequest = parsed(bytes)?;
+    let file = request.swimmer.read()?;
+    let (swimmer, bounds) = (file.swimmer, request.bounds.of(&file));
     let of_branch = |branch| {
         let problem = EfficiencyProblem {
             bounds,
@@ -64,38 +64,38 @@ pub(super) fn optimize(_: &mut Lab, bytes: &[u8]) -> Outcome {
         };
         efficiency(&problem).map_err(|why| why.to_string())
     };
-    let found = match asked.what {
-        What::Displacement => {
+    let found = match request.what {
+        Optimum::Displacement => {
             let problem = DisplacementProblem {
                 bounds,
                 ..DisplacementProblem::new(swimmer)
             };
-            Found::new(
+            OptimizeOutput::new(
                 &displacement(&problem).map_err(|why| why.to_string())?,
                 &file.name,
             )
         }
-        What::EfficiencySmall => Found::new(&of_branch(Branch::Small)?, &file.name),
-        What::EfficiencyLarge => Found::new(&of_branch(Branch::Large)?, &file.name),
-        What::Turning => {
+        Optimum::EfficiencySmall => OptimizeOutput::new(&of_branch(Branch::Small)?, &file.name),
+        Optimum::EfficiencyLarge => OptimizeOutput::new(&of_branch(Branch::Large)?, &file.name),
+        Optimum::Turning => {
             let found =
                 turning(&TurningProblem { swimmer, bounds }).map_err(|why| why.to_string())?;
-            Found::new(&found.gait, &file.name)
+            OptimizeOutput::new(&found.gait, &file.name)
         }
-        What::Sideways => {
+        Optimum::Sideways => {
             let problem = SidewaysProblem {
                 bounds,
                 ..SidewaysProblem::new(swimmer)
             };
-            Found::new(
+            OptimizeOutput::new(
                 &sideways(&problem, &|_| ())
                     .map_err(|why| why.to_string())?
                     .gait,
                 &file.name,
             )
         }
-        What::Speed => {
-            let rate = asked
+        Optimum::Speed => {
+            let rate = request
                 .max_rate
                 .unwrap_or(file.servo.unwrap_or_default().max_rate);
             let problem = SpeedProblem {
@@ -103,19 +103,19 @@ pub(super) fn optimize(_: &mut Lab, bytes: &[u8]) -> Outcome {
                 ..SpeedProblem::new(swimmer, [rate; 2])
             };
             let found = fastest(&problem).map_err(|why| why.to_string())?;
-            Found {
+            OptimizeOutput {
                 period_s: Some(found.period),
                 speed_over_length_per_s: Some(found.speed_over_length),
                 displacement_over_length: found.distance_over_length,
                 displacement_m: found.distance_over_length * swimmer.total_length(),
-                ..Found::new(&found.gait, &file.name)
+                ..OptimizeOutput::new(&found.gait, &file.name)
             }
         }
     };
     json(&found)
 }
 
-impl Found {
+impl OptimizeOutput {
     fn new(gait: &OptimalGait, name: &str) -> Self {
         Self {
             displacement_over_length: gait.displacement_over_length,

@@ -8,11 +8,11 @@ use swimmer_files::{AnyGait, Objective};
 use swimmer_model::{Gait, Model, Pose, Tolerance, crossing_share, swim};
 
 use super::objective;
-use crate::calls::{Answer, Lab, Outcome, json, parsed};
+use crate::calls::{CallOutput, Lab, Outcome, json, parsed};
 use crate::input::SwimmerText;
 
 #[derive(Deserialize)]
-struct Asked {
+struct GaitRequest {
     swimmer: SwimmerText,
     gait: GaitSource,
     /// Period of a cycle \[s\].
@@ -36,7 +36,7 @@ struct Net {
 
 /// Motion of one cycle, with the keys of `swimmer simulate --json`, and additional numbers of the page.
 #[derive(Serialize)]
-struct Swum {
+struct SimulateOutput {
     #[serde(flatten)]
     net: Net,
     links_cross: f64,
@@ -49,7 +49,7 @@ struct Swum {
 }
 
 /// Samples per cycle for the peak rates: ten for each knot of a spline of 192 knots.
-const LOOKS: usize = 1920;
+const RATE_SAMPLES: usize = 1920;
 
 impl Net {
     fn of(model: &Model<f64>, gait: &AnyGait, period: f64) -> Self {
@@ -65,39 +65,39 @@ impl Net {
 
 /// Net motion of a gait, computed quickly.
 pub(super) fn net(_: &mut Lab, bytes: &[u8]) -> Outcome {
-    let asked: Asked = parsed(bytes)?;
-    let (_, model) = asked.swimmer.model()?;
+    let request: GaitRequest = parsed(bytes)?;
+    let (_, model) = request.swimmer.model()?;
     json(&Net::of(
         &model,
-        &asked.gait.read(Files::Unavailable)?,
-        asked.period,
+        &request.gait.read(Files::Unavailable)?,
+        request.period,
     ))
 }
 
 /// Simulates a gait and evaluates all quantities.
 pub(super) fn simulate(_: &mut Lab, bytes: &[u8]) -> Outcome {
-    let asked: Asked = parsed(bytes)?;
-    let (file, model) = asked.swimmer.model()?;
-    let gait = asked.gait.read(Files::Unavailable)?;
+    let request: GaitRequest = parsed(bytes)?;
+    let (file, model) = request.swimmer.model()?;
+    let gait = request.gait.read(Files::Unavailable)?;
     let mut peaks = [0.0_f64; 2];
-    for look in 0..LOOKS {
-        let rate = gait.at(look as f64 / LOOKS as f64).rate;
+    for sample in 0..RATE_SAMPLES {
+        let rate = gait.at(sample as f64 / RATE_SAMPLES as f64).rate;
         for (peak, rate) in peaks.iter_mut().zip(rate.iter()) {
             *peak = peak.max(rate.abs());
         }
     }
     let servo = file.servo.unwrap_or_default();
-    json(&Swum {
-        net: Net::of(&model, &gait, asked.period),
+    json(&SimulateOutput {
+        net: Net::of(&model, &gait, request.period),
         links_cross: crossing_share(&file.swimmer.links, &gait).of_cycle,
-        peak_rates_rad_s: peaks.map(|peak| peak / asked.period),
+        peak_rates_rad_s: peaks.map(|peak| peak / request.period),
         reach_rad: forecast::reach(&gait).angle.abs(),
         shortest_period_s: shortest_period(&gait, [servo.max_rate; 2]).ok(),
     })
 }
 
 #[derive(Deserialize)]
-struct FileAsked {
+struct GaitFileRequest {
     swimmer: SwimmerText,
     gait: GaitSource,
     objective: Option<String>,
@@ -107,20 +107,20 @@ struct FileAsked {
 
 /// Text of a gait file: unchanged for an optimal gait, otherwise with the swimmer of the page.
 pub(super) fn gait_file(_: &mut Lab, bytes: &[u8]) -> Outcome {
-    let asked: FileAsked = parsed(bytes)?;
-    let swimmer = asked.swimmer.read()?;
-    let mut file = asked.gait.file(Files::Unavailable)?;
+    let request: GaitFileRequest = parsed(bytes)?;
+    let swimmer = request.swimmer.read()?;
+    let mut file = request.gait.file(Files::Unavailable)?;
     if file.objective == Objective::Unspecified {
-        file.objective = objective::parse(asked.objective.as_deref())?.unwrap_or_default();
-        file.bounds = asked.bounds.of(&swimmer);
+        file.objective = objective::parse(request.objective.as_deref())?.unwrap_or_default();
+        file.bounds = request.bounds.of(&swimmer);
         file.swimmer_hash = Some(swimmer.hash());
         file.swimmer_name = Some(swimmer.name);
     }
-    Ok(Answer::Bytes(file.to_text().into_bytes()))
+    Ok(CallOutput::Bytes(file.to_text().into_bytes()))
 }
 
 #[derive(Deserialize)]
-struct TankAsked {
+struct TankRequest {
     swimmer: SwimmerText,
     gait: GaitSource,
     length_m: f64,
@@ -128,7 +128,7 @@ struct TankAsked {
 }
 
 #[derive(Serialize)]
-struct TankAnswer {
+struct TankOutput {
     /// Number of cycles; `None` if the swimmer never reaches a wall.
     cycles: Option<f64>,
     part: Option<&'static str>,
@@ -136,19 +136,19 @@ struct TankAnswer {
 
 /// Number of cycles from the middle of a tank to a wall, heading along the tank.
 pub(super) fn tank(_: &mut Lab, bytes: &[u8]) -> Outcome {
-    let asked: TankAsked = parsed(bytes)?;
-    let (_, model) = asked.swimmer.model()?;
+    let request: TankRequest = parsed(bytes)?;
+    let (_, model) = request.swimmer.model()?;
     let tank = Tank {
-        length: asked.length_m,
-        width: asked.width_m,
+        length: request.length_m,
+        width: request.width_m,
     };
     let meeting = until_wall(
         &model,
-        &asked.gait.read(Files::Unavailable)?,
+        &request.gait.read(Files::Unavailable)?,
         &tank,
         &Pose::identity(),
     );
-    json(&TankAnswer {
+    json(&TankOutput {
         cycles: meeting.map(|meeting| meeting.cycles),
         part: meeting.map(|meeting| meeting.part.word()),
     })

@@ -9,17 +9,17 @@ use crate::calls::{Lab, Outcome, json, parsed};
 use crate::input::SwimmerText;
 
 #[derive(Deserialize)]
-struct Asked {
+struct SwimmerRequest {
     swimmer: SwimmerText,
     /// Values of the sliders; missing ones are unchanged.
     #[serde(default)]
-    with: With,
+    with: ChangedValues,
 }
 
 /// Changed values, in the units of the swimmer file.
 #[derive(Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-struct With {
+struct ChangedValues {
     chi: Option<f64>,
     sphere_radius_m: Option<f64>,
     middle_m: Option<f64>,
@@ -29,7 +29,7 @@ struct With {
 }
 
 #[derive(Serialize)]
-struct Answer {
+struct SwimmerOutput {
     name: String,
     toml: String,
     hash: String,
@@ -49,7 +49,7 @@ struct Answer {
 
 /// Reads a swimmer, changes it, and returns its values.
 pub(super) fn swimmer(_: &mut Lab, bytes: &[u8]) -> Outcome {
-    let Asked { swimmer, with } = parsed(bytes)?;
+    let SwimmerRequest { swimmer, with } = parsed(bytes)?;
     let mut file = swimmer.read()?;
     with.apply(&mut file);
     file.swimmer
@@ -70,7 +70,7 @@ pub(super) fn swimmer(_: &mut Lab, bytes: &[u8]) -> Outcome {
         // Refused above.
         TangentialDrag::PerLink(_) => ("over_viscosity", file.swimmer.side_drag()),
     };
-    json(&Answer {
+    json(&SwimmerOutput {
         toml: file.to_toml(),
         hash: file.hash().to_string(),
         total_length_m: file.swimmer.total_length(),
@@ -88,7 +88,7 @@ pub(super) fn swimmer(_: &mut Lab, bytes: &[u8]) -> Outcome {
     })
 }
 
-impl With {
+impl ChangedValues {
     fn apply(&self, file: &mut SwimmerFile) {
         let swimmer = &mut file.swimmer;
         let links = &mut swimmer.links;
