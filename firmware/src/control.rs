@@ -36,8 +36,8 @@ pub(crate) async fn control(mut control: Control) {
         // The tick has priority: a flood of bytes cannot delay it.
         let event = select3(
             Timer::at(next_tick),
-            uart::LINE.received.read(&mut over_uart),
-            usb::LINE.received.read(&mut over_usb),
+            uart::BUFFERS.received.read(&mut over_uart),
+            usb::BUFFERS.received.read(&mut over_usb),
         );
         match event.await {
             Either3::First(()) => {
@@ -107,8 +107,8 @@ impl Control {
     /// Copies the brain's outgoing bytes to the transmitters, as far as they have space.
     fn hand_over_bytes(&mut self) {
         let brain = &mut *self.brain;
-        uart::LINE.fill(|bytes| brain.transmit(Transport::Uart, bytes));
-        usb::LINE.fill(|bytes| brain.transmit(Transport::Usb, bytes));
+        uart::BUFFERS.fill(|bytes| brain.transmit(Transport::Uart, bytes));
+        usb::BUFFERS.fill(|bytes| brain.transmit(Transport::Usb, bytes));
     }
 }
 

@@ -9,14 +9,14 @@ pub(crate) const RECEIVED: usize = 1024;
 const TO_SEND: usize = 512;
 
 /// Buffers of a transport.
-pub(crate) struct Line {
+pub(crate) struct LinkBuffers {
     /// Bytes for the control task.
     pub(crate) received: Pipe<CriticalSectionRawMutex, RECEIVED>,
     /// Bytes from the control task.
     pub(crate) to_send: Pipe<CriticalSectionRawMutex, TO_SEND>,
 }
 
-impl Line {
+impl LinkBuffers {
     pub(crate) const fn new() -> Self {
         Self {
             received: Pipe::new(),

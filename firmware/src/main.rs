@@ -3,7 +3,7 @@
 //!
 //! ```text
 //!  thread executor                        interrupt executor (SWI_IRQ_1), above the thread and USB, below the UART
-//!  ┌────────────────┐   a Line    ┌──────────────────────────────────────────────┐
+//!  ┌────────────────┐ LinkBuffers ┌──────────────────────────────────────────────┐
 //!  │ uart::receive  │ ──────────► │ control, at every 20 ms tick and when bytes  │ ──► servos (PWM slice)
 //!  │ uart::send     │ ◄────────── │ came: Brain::receive, tick, transmit         │ ──► LED, watchdog
 //!  │ usb::receive   │   another   │ only while stopped: Brain::serve_storage,    │ ◄─► storage (flash)
@@ -37,7 +37,7 @@ mod crash;
 #[cfg(target_os = "none")]
 mod led;
 #[cfg(target_os = "none")]
-mod line;
+mod link_buffers;
 #[cfg(target_os = "none")]
 mod presence;
 #[cfg(target_os = "none")]

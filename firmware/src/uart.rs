@@ -13,7 +13,7 @@ use embedded_io_async::{Read, Write};
 use static_cell::StaticCell;
 
 use crate::build_setting::number;
-use crate::line::{Line, RECEIVED};
+use crate::link_buffers::{LinkBuffers, RECEIVED};
 
 /// Baud rate that `swimmer robot hc05` sets on the HC-05.
 const BAUD: u32 = match number(option_env!("SWIMMER_LINK_BAUD")) {
@@ -32,7 +32,7 @@ pub(crate) const RECEIVE_BUFFER: usize = RECEIVE_RING + RECEIVED;
 const SEND_RING: usize = 32;
 
 /// Buffers of the UART.
-pub(crate) static LINE: Line = Line::new();
+pub(crate) static BUFFERS: LinkBuffers = LinkBuffers::new();
 
 bind_interrupts!(struct Interrupts {
     UART0_IRQ => BufferedInterruptHandler<UART0>;
@@ -67,7 +67,7 @@ async fn receive(mut rx: BufferedUartRx) {
     let mut bytes = [0; 64];
     loop {
         match rx.read(&mut bytes).await {
-            Ok(count) => LINE.received.write_all(&bytes[..count]).await,
+            Ok(count) => BUFFERS.received.write_all(&bytes[..count]).await,
             // The frames' checksums detect the missing bytes.
             Err(error) => defmt::debug!("UART: {}", error),
         }
@@ -78,7 +78,7 @@ async fn receive(mut rx: BufferedUartRx) {
 async fn send(mut tx: BufferedUartTx, state: &'static Input<'static>) {
     let mut bytes = [0; SEND_RING];
     loop {
-        let count = LINE.to_send.read(&mut bytes).await;
+        let count = BUFFERS.to_send.read(&mut bytes).await;
         // A disconnected HC-05 would interpret bytes as AT commands, so they are dropped.
         if state.is_high()
             && let Err(error) = tx.write_all(&bytes[..count]).await

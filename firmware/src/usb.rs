@@ -13,7 +13,7 @@ use embassy_usb::{Builder, Config, Handler, UsbDevice};
 use portable_atomic::{AtomicBool, Ordering};
 use static_cell::StaticCell;
 
-use crate::line::Line;
+use crate::link_buffers::LinkBuffers;
 
 /// Test product of pid.codes: free for private use, not for sale. A robot for others needs its own number, which pid.codes
 /// assigns to open designs.
@@ -25,7 +25,7 @@ const PACKET: usize = 64;
 const SENT: usize = PACKET - 1;
 
 /// Buffers of the USB port.
-pub(crate) static LINE: Line = Line::new();
+pub(crate) static BUFFERS: LinkBuffers = LinkBuffers::new();
 /// A computer has configured the device, and its bus is awake.
 static UP: AtomicBool = AtomicBool::new(false);
 
@@ -99,7 +99,7 @@ async fn receive(mut port: Receiver<'static, Bus>) {
         port.wait_connection().await;
         while let Ok(count) = port.read_packet(&mut packet).await {
             // If the brain is slow, the bus waits, so nothing is lost here.
-            LINE.received.write_all(&packet[..count]).await;
+            BUFFERS.received.write_all(&packet[..count]).await;
         }
     }
 }
@@ -108,7 +108,7 @@ async fn receive(mut port: Receiver<'static, Bus>) {
 async fn send(mut port: Sender<'static, Bus>) {
     let mut packet = [0; SENT];
     loop {
-        let count = LINE.to_send.read(&mut packet).await;
+        let count = BUFFERS.to_send.read(&mut packet).await;
         if is_up()
             && let Err(error) = port.write_packet(&packet[..count]).await
         {
