@@ -12,10 +12,9 @@ pub(crate) enum Failure {
     /// It was tried and did not work: no convergence, the robot refused, no answer. Exit status 1.
     #[error("{0}")]
     Tried(String),
-    /// It was tried and failed, and the answer that was printed says so already: the reason goes to standard error alone.
-    /// Exit status 1.
+    /// It was tried and failed, and the printed output already says so: the reason goes to standard error alone. Exit status 1.
     #[error("{0}")]
-    Answered(String),
+    AlreadyPrinted(String),
     /// The arguments, or a named file, are invalid. Exit status 2.
     #[error("{0}")]
     BadInput(String),
@@ -54,7 +53,7 @@ impl Failure {
     /// The exit status that scripts see.
     pub(crate) fn status(&self) -> u8 {
         match self {
-            Self::Tried(_) | Self::Answered(_) => 1,
+            Self::Tried(_) | Self::AlreadyPrinted(_) => 1,
             Self::BadInput(_) => BAD_INPUT,
         }
     }

@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use crate::failure::{Failure, Outcome};
 use crate::new_folder::Drafts;
-use crate::output::{Output, handed_over};
+use crate::output::{Output, is_captured};
 
 /// Exit status of a program that a second Ctrl-C ends, as shells have it.
 const AT_ONCE: i32 = 130;
@@ -95,7 +95,7 @@ pub(crate) fn answers_with(output: Output) {
 /// # Errors
 /// The operating system refuses the handler.
 pub(crate) fn listen() -> Result<(), ctrlc::Error> {
-    if handed_over() {
+    if is_captured() {
         return Ok(());
     }
     let mut listening = locked(&LISTENING);

@@ -7,9 +7,9 @@
 // All prints go through `output`, which does not panic if the reader has gone.
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
-mod answer;
 mod arguments;
 mod bounds;
+mod captured;
 mod commands;
 mod csv_text;
 mod document;
@@ -39,7 +39,7 @@ use std::ffi::OsString;
 use clap::FromArgMatches as _;
 use clap::error::ErrorKind;
 
-pub use crate::answer::{Answered, Refused, answer, options};
+pub use crate::captured::{CapturedFailure, CapturedOutput, options, run_captured};
 use crate::commands::Arguments;
 use crate::failure::BAD_INPUT;
 use crate::output::Output;

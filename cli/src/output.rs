@@ -25,7 +25,7 @@ pub(crate) fn be_for_scripts() {
 
 /// Returns true if a script reads the output.
 pub(crate) fn for_scripts() -> bool {
-    FOR_SCRIPTS.load(Ordering::Relaxed) || handed_over()
+    FOR_SCRIPTS.load(Ordering::Relaxed) || is_captured()
 }
 
 /// Set by `--verbose`.
@@ -43,27 +43,27 @@ pub(crate) fn verbose() -> bool {
 
 thread_local! {
     /// Output of this thread's command, if its caller in the same process collects it.
-    static HANDED_OVER: RefCell<Option<HandedOver>> = const { RefCell::new(None) };
+    static CAPTURED: RefCell<Option<Captured>> = const { RefCell::new(None) };
 }
 
 /// Text for standard output and for standard error.
 #[derive(Debug, Default)]
-pub(crate) struct HandedOver {
+pub(crate) struct Captured {
     pub(crate) document: String,
     pub(crate) asides: Vec<String>,
 }
 
 /// Runs `command` and collects this thread's output for the caller.
-pub(crate) fn hand_over<T>(command: impl FnOnce() -> T) -> (T, HandedOver) {
-    let before = HANDED_OVER.replace(Some(HandedOver::default()));
+pub(crate) fn capture<T>(command: impl FnOnce() -> T) -> (T, Captured) {
+    let before = CAPTURED.replace(Some(Captured::default()));
     let done = command();
-    let said = HANDED_OVER.replace(before);
+    let said = CAPTURED.replace(before);
     (done, said.unwrap_or_default())
 }
 
 /// Returns true if a caller in the same process collects this thread's output.
-pub(crate) fn handed_over() -> bool {
-    HANDED_OVER.with_borrow(Option::is_some)
+pub(crate) fn is_captured() -> bool {
+    CAPTURED.with_borrow(Option::is_some)
 }
 
 /// Form of a command's output.
@@ -75,7 +75,7 @@ pub(crate) struct Output {
 
 impl Output {
     /// Prints the output of a command whose text is its `Display`, once, at its end.
-    pub(crate) fn answer(self, output: &(impl Serialize + fmt::Display)) {
+    pub(crate) fn print(self, output: &(impl Serialize + fmt::Display)) {
         self.rendered(output, output);
     }
 
@@ -102,7 +102,7 @@ impl Output {
     pub(crate) fn failure(self, failure: &Failure) {
         let reason = with_places(&failure.to_string());
         aside(&format!("error: {reason}"));
-        if self.json && !matches!(failure, Failure::Answered(_)) {
+        if self.json && !matches!(failure, Failure::AlreadyPrinted(_)) {
             write_all(&error_document(&reason));
         }
     }
@@ -110,7 +110,7 @@ impl Output {
 
 /// Prints a warning or a note on standard error. A closed standard error is ignored.
 pub(crate) fn aside(text: &str) {
-    let taken = HANDED_OVER
+    let taken = CAPTURED
         .with_borrow_mut(|said| said.as_mut().map(|said| said.asides.push(text.to_owned())));
     if taken.is_some() {
         return;
@@ -141,7 +141,7 @@ pub(crate) fn document(value: &impl Serialize) -> String {
 /// Writes to standard output. [`delivered`] reports a failure at the end.
 pub(crate) fn write_all(text: &str) {
     let taken =
-        HANDED_OVER.with_borrow_mut(|said| said.as_mut().map(|said| said.document.push_str(text)));
+        CAPTURED.with_borrow_mut(|said| said.as_mut().map(|said| said.document.push_str(text)));
     if taken.is_some() {
         return;
     }
@@ -167,8 +167,8 @@ pub(crate) fn loss(written: io::Result<()>) -> Option<String> {
 /// Checks that all output was written.
 ///
 /// # Errors
-/// [`Failure::Answered`] if not, because nothing more can be written to it.
+/// [`Failure::AlreadyPrinted`] if not, because nothing more can be written to it.
 pub(crate) fn delivered() -> Outcome {
     LOST.get()
-        .map_or(Ok(()), |lost| Err(Failure::Answered(lost.clone())))
+        .map_or(Ok(()), |lost| Err(Failure::AlreadyPrinted(lost.clone())))
 }

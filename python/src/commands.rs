@@ -1,4 +1,4 @@
-//! The commands: one answer as its JSON document, and the whole `swimmer` command.
+//! The commands: the output of one as its JSON document, and the whole `swimmer` command.
 
 use std::ffi::OsString;
 use std::sync::mpsc::{self, RecvTimeoutError};
@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
-use swimmer_command::{Answered, Refused};
+use swimmer_command::{CapturedFailure, CapturedOutput};
 
 use crate::errors::{BadInput, Failed};
 
@@ -22,20 +22,23 @@ const LOOK_FOR_SIGNALS_EVERY: Duration = Duration::from_millis(50);
 /// computed ends by itself and is dropped.
 #[pyfunction]
 #[allow(clippy::redundant_closure_for_method_calls)] // the method is not general enough over lifetimes
-pub(crate) fn answer(py: Python<'_>, words: Vec<OsString>) -> PyResult<(String, Vec<String>)> {
-    let (tell, told) = mpsc::channel();
+pub(crate) fn run_captured(
+    py: Python<'_>,
+    words: Vec<OsString>,
+) -> PyResult<(String, Vec<String>)> {
+    let (sender, receiver) = mpsc::channel();
     thread::Builder::new()
         .name("swimmer".to_owned())
         .stack_size(STACK_BYTES)
         .spawn(move || {
             // Nobody listens any more after Ctrl-C.
-            let _ = tell.send(swimmer_command::answer(words));
+            let _ = sender.send(swimmer_command::run_captured(words));
         })?;
     py.detach(move || {
         loop {
-            match told.recv_timeout(LOOK_FOR_SIGNALS_EVERY) {
-                Ok(Ok(Answered { document, notes })) => return Ok((document, notes)),
-                Ok(Err(refused)) => return Err(exception(refused)),
+            match receiver.recv_timeout(LOOK_FOR_SIGNALS_EVERY) {
+                Ok(Ok(CapturedOutput { document, notes })) => return Ok((document, notes)),
+                Ok(Err(failure)) => return Err(exception(failure)),
                 Err(RecvTimeoutError::Timeout) => Python::attach(|py| py.check_signals())?,
                 Err(RecvTimeoutError::Disconnected) => {
                     return Err(PyRuntimeError::new_err(
@@ -48,12 +51,12 @@ pub(crate) fn answer(py: Python<'_>, words: Vec<OsString>) -> PyResult<(String, 
 }
 
 /// The command's own sentence, after the warnings that came before it.
-fn exception(refused: Refused) -> PyErr {
-    let Refused {
+fn exception(failure: CapturedFailure) -> PyErr {
+    let CapturedFailure {
         reason,
         bad_input,
         mut notes,
-    } = refused;
+    } = failure;
     notes.insert(0, reason);
     let text = notes.join("\n");
     if bad_input {

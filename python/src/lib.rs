@@ -16,7 +16,7 @@ mod swimmer;
 #[pyo3::pymodule]
 mod _swimmer {
     #[pymodule_export]
-    use super::commands::{answer, options, run};
+    use super::commands::{options, run, run_captured};
     #[pymodule_export]
     use super::errors::{BadInput, Error, Failed};
     #[pymodule_export]

@@ -105,7 +105,7 @@ class Run:
     def document(self, stacklevel: int = 3) -> Document:
         """What the command answers; what it says beside it becomes warnings where its caller's caller stands."""
         try:
-            text, notes = _swimmer.answer(self._words)
+            text, notes = _swimmer.run_captured(self._words)
         except Error as error:
             raise type(error)(self._shown(str(error))) from None
         for note in notes:

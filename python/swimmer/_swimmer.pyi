@@ -5,7 +5,7 @@ from typing import final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["BadInput", "Error", "Failed", "Gait", "Swimmer", "answer", "options", "run"]
+__all__ = ["BadInput", "Error", "Failed", "Gait", "Swimmer", "options", "run", "run_captured"]
 
 class Error(Exception):
     """Something was asked for and not done; the text says what, and what to do next."""
@@ -152,7 +152,7 @@ class Gait:
     def __eq__(self, other: object, /) -> bool: ...
     def __hash__(self) -> int: ...
 
-def answer(words: Sequence[str | os.PathLike[str]]) -> tuple[str, list[str]]:
+def run_captured(words: Sequence[str | os.PathLike[str]]) -> tuple[str, list[str]]:
     """The JSON document of a command, and the warnings that it gave.
 
     On Ctrl-C this raises `KeyboardInterrupt` at once; what was being computed ends by itself and is dropped.

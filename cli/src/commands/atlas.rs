@@ -26,7 +26,7 @@ use crate::progress::Progress;
 use crate::quantity;
 use crate::threads;
 
-use super::optimize::answer::tell_figures;
+use super::optimize::output::add_figures;
 use folder::fill;
 
 /// Find every locally optimal gait, with and without the paper's symmetries, each certified
@@ -115,7 +115,7 @@ impl Atlas {
                 answer
                     .key("continuation", followed)
                     .key("seconds", begun.elapsed().as_secs_f64());
-                output.answer(&answer);
+                output.print(&answer);
                 return Ok(());
             }
         }
@@ -167,7 +167,7 @@ impl Atlas {
             .key("seconds", seconds)
             .key_if("continuation", continuation)
             .key_if("picture", picture);
-        output.answer(&answer);
+        output.print(&answer);
         Ok(())
     }
 
@@ -229,7 +229,7 @@ fn told(optimum: &Optimum, rates: Option<[f64; 2]>, seconds: f64) -> Outcome<(Do
         // Of the quarter where the gait is symmetric, else of the cycle.
         .key("arcs", gait.arcs.clone())
         .key("links_cross", gait.links_cross);
-    tell_figures(&mut keys, gait, Condition::ShootingResidual, |gait| {
+    add_figures(&mut keys, gait, Condition::ShootingResidual, |gait| {
         gait.certificate.value(Condition::ConstantPower)
     });
     keys.key("certificate", gait.certificate.clone())

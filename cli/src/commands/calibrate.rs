@@ -1,10 +1,10 @@
 //! `swimmer calibrate`: tracks → poses → cycles → fitted sphere radius and χ.
 
-mod answer;
 mod assessment;
+mod beyond_fit;
 mod folder;
-mod further;
 mod joints;
+mod output;
 mod wrong_gait;
 
 use std::path::{Path, PathBuf};
@@ -16,12 +16,12 @@ use calibrate::{
 };
 use swimmer_files::{Campaign, GaitSpec, PointName, Reflector, Reflectors, RigidBody, SwimmerFile};
 
-use self::answer::RunsAnswer;
-pub(crate) use self::answer::{FitAnswer, RunAnswer};
-pub(crate) use self::assessment::AssessmentAnswer;
-pub(crate) use self::further::Shown;
-use self::further::{BeyondFit, FurtherAnswers};
-pub(crate) use self::joints::JointsAnswer;
+pub(crate) use self::assessment::AssessmentOutput;
+pub(crate) use self::beyond_fit::ResultTable;
+use self::beyond_fit::{BeyondFit, BeyondFitOutput};
+pub(crate) use self::joints::JointsOutput;
+use self::output::RunsOutput;
+pub(crate) use self::output::{FitOutput, RunOutput};
 use crate::arguments::{gait, load_robots_swimmer, say_if_stale, seconds};
 use crate::failure::{Failure, Outcome};
 use crate::new_folder::NewFolder;
@@ -93,14 +93,14 @@ const WRITING: f64 = 0.5;
 
 /// A campaign's fit with what is printed of it.
 pub(crate) struct FittedCampaign {
-    pub(crate) answer: FitAnswer,
+    pub(crate) answer: FitOutput,
     pub(crate) found: CampaignFit,
     pub(crate) campaign: Campaign,
 }
 
 /// One run's cycles with what is printed of them.
 pub(crate) struct RunCycles {
-    pub(crate) answer: RunAnswer,
+    pub(crate) answer: RunOutput,
     pub(crate) found: RunResult,
 }
 
@@ -119,11 +119,11 @@ pub(crate) fn fit_campaign(path: &Path, level: f64) -> Outcome<FittedCampaign> {
     let runs = found
         .runs
         .iter()
-        .map(|run| RunAnswer::new(run, &campaign.runs[run.index].gait, folder))
+        .map(|run| RunOutput::new(run, &campaign.runs[run.index].gait, folder))
         .collect();
     let fit = &found.fit;
     let of_runs = found.runs.iter().flat_map(|run| run_warnings(run, folder));
-    let answer = FitAnswer {
+    let answer = FitOutput {
         runs,
         sphere_radius_m: fit.sphere_radius,
         chi: fit.chi,
@@ -132,7 +132,7 @@ pub(crate) fn fit_campaign(path: &Path, level: f64) -> Outcome<FittedCampaign> {
         correlation: fit.correlation,
         c_t_form: c_t_form(&fit.c_t_form),
         likelihood: None,
-        joints: JointsAnswer::of(&found),
+        joints: JointsOutput::of(&found),
         assessment: None,
         warnings: of_runs
             .chain(wrong_gait::of_campaign(
@@ -143,7 +143,7 @@ pub(crate) fn fit_campaign(path: &Path, level: f64) -> Outcome<FittedCampaign> {
             ))
             .chain(fit.warnings.iter().map(ToString::to_string))
             .collect(),
-        beyond: FurtherAnswers::default(),
+        beyond: BeyondFitOutput::default(),
     };
     Ok(FittedCampaign {
         answer,
@@ -209,7 +209,7 @@ pub(crate) fn single_run(
         .unwrap_or_else(|| usual_reflectors(&data.track, &swimmer.swimmer));
     let found = calibrate_run(&data, &reflectors, swimmer)?;
     Ok(RunCycles {
-        answer: RunAnswer::new(&found, gait, Path::new("")),
+        answer: RunOutput::new(&found, gait, Path::new("")),
         found,
     })
 }
@@ -253,7 +253,7 @@ impl Calibrate {
         let mut fitted = fit_campaign(&self.file, self.level)?;
         fitted.answer.beyond = self
             .beyond
-            .answer(&fitted.campaign, &fitted.found, &mut stages)?;
+            .compute(&fitted.campaign, &fitted.found, &mut stages)?;
         let options = EvidenceOptions::default();
         stages.next("weighing the evidence", WEIGHING);
         let evidence = weigh_evidence(&fitted.found, options);
@@ -271,7 +271,7 @@ impl Calibrate {
             let path = file.strip_prefix(of_folder).unwrap_or(file);
             path.display().to_string()
         });
-        fitted.answer.assessment = Some(AssessmentAnswer(document));
+        fitted.answer.assessment = Some(AssessmentOutput(document));
         if let Some(folder) = folder {
             stages.next("writing report and tables", WRITING);
             let weighed = (&evidence?, options);
@@ -285,7 +285,7 @@ impl Calibrate {
             folder.publish()?;
         }
         drop(stages);
-        output.answer(&fitted.answer);
+        output.print(&fitted.answer);
         Ok(())
     }
 
@@ -324,7 +324,7 @@ impl Calibrate {
         let file = self.file.display();
         let doubts = wrong_gait::of_single(&run.found, gait, period_s, &swimmer);
         warnings.extend(doubts.into_iter().map(|doubt| format!("{file}: {doubt}")));
-        output.answer(&RunsAnswer {
+        output.print(&RunsOutput {
             runs: vec![run.answer],
             warnings,
         });

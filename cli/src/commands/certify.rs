@@ -66,10 +66,10 @@ impl Certify {
         let of = checks.len();
         match certified.certificate.verdict() {
             Verdict::Pass => Ok(()),
-            Verdict::Fail => Err(Failure::Answered(format!(
+            Verdict::Fail => Err(Failure::AlreadyPrinted(format!(
                 "the gait is no certified optimum: {failed} of {of} conditions do not hold"
             ))),
-            Verdict::Undecided => Err(Failure::Answered(format!(
+            Verdict::Undecided => Err(Failure::AlreadyPrinted(format!(
                 "undecided from these samples: {failed} of {of} conditions do not hold, and so few or so rounded samples may be \
                  the reason; write more of them, with all digits"
             ))),

@@ -1,7 +1,7 @@
 //! `swimmer demo`: once round the whole loop on a virtual robot, and a report of it.
 
-mod answer;
 mod laboratory;
+mod output;
 mod picture;
 mod race;
 
@@ -18,8 +18,8 @@ use swimmer_files::{
 };
 use swimmer_model::Swimmer;
 
-use self::answer::DemoAnswer;
 use self::laboratory::Laboratory;
+use self::output::DemoOutput;
 use self::race::Race;
 use super::calibrate::{FittedCampaign, MiddleLink, RunCycles, fit_campaign, single_run};
 use super::lab;
@@ -105,7 +105,7 @@ impl Demo {
         write_atomically(&folder.draft().join(REPORT), page.as_bytes())?;
         let place = folder.place().to_owned();
         folder.publish()?;
-        output.answer(&DemoAnswer::new(&round, &place));
+        output.print(&DemoOutput::new(&round, &place));
         Ok(())
     }
 }

@@ -21,7 +21,7 @@ use self::callers::{Caller, Callers};
 use self::gate::{Gate, Token};
 pub(crate) use self::page::{beside, find};
 use self::visitor::Server;
-use crate::commands::robot::PortToLend;
+use crate::commands::robot::SharedPortOptions;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
 use crate::new_file::may_be_written;
@@ -54,7 +54,7 @@ pub(crate) struct Lab {
     #[arg(long)]
     no_browser: bool,
     #[command(flatten)]
-    port: PortToLend,
+    port: SharedPortOptions,
 }
 
 #[derive(Debug, Serialize)]
@@ -93,7 +93,7 @@ impl Lab {
         let page = page::load(self.page.as_deref())?;
         if let Some(path) = &self.export {
             write_atomically(path, &page)?;
-            output.answer(&Exported {
+            output.print(&Exported {
                 page: path.display().to_string(),
                 bytes: page.len(),
             });
@@ -132,7 +132,7 @@ impl Lab {
             }
         }
         let connections = door.join().unwrap_or_default();
-        output.answer(&Served { connections });
+        output.print(&Served { connections });
         Ok(())
     }
 }

@@ -65,10 +65,11 @@ impl Paper {
             .filter(|row| row.pass == Some(false))
             .map(|row| row.id)
             .collect();
-        let failure = (!differ.is_empty())
-            .then(|| Failure::Answered(format!("differ from the paper: {}", differ.join(", "))));
+        let failure = (!differ.is_empty()).then(|| {
+            Failure::AlreadyPrinted(format!("differ from the paper: {}", differ.join(", ")))
+        });
         drop(progress);
-        output.answer(&PaperOutput {
+        output.print(&PaperOutput {
             rows,
             page: written,
         });

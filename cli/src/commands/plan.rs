@@ -1,6 +1,6 @@
 //! `swimmer plan`: gaits of one family strung together to a target.
 
-mod answer;
+mod output;
 mod playlist;
 
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use forecast::{Family, PlanError, PlanRequest, Servos, Tank, plan};
 use swimmer_files::{AnyGait, GaitFile, SwimmerFile};
 use swimmer_model::{Gait as _, Link, Pose};
 
-use self::answer::answer;
+use self::output::answer;
 use self::playlist::write_playlist;
 use super::optimize::steer::{Steer, named};
 use super::robot::preflight::tank;
@@ -144,7 +144,7 @@ impl Plan {
             Some(path) => Some(write_playlist(path, &file, &family, &found)?),
             None => None,
         };
-        output.answer(&answer(&file.name, &found, wrong, gaits, self.output));
+        output.print(&answer(&file.name, &found, wrong, gaits, self.output));
         Ok(())
     }
 

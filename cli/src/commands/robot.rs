@@ -1,7 +1,6 @@
 //! `swimmer robot`: talks to a robot over a port, or to a fresh twin for the length of the command.
 
 mod access;
-mod answers;
 mod bench;
 mod configure;
 mod dashboard;
@@ -10,9 +9,9 @@ mod flash;
 mod hc05;
 mod info;
 mod key;
-mod lent;
 mod log;
 mod motion;
+mod outputs;
 mod playing;
 mod playlist;
 mod port;
@@ -21,6 +20,7 @@ pub(super) mod preflight;
 mod rest;
 pub(super) mod servo;
 mod setup;
+mod shared_port;
 mod stop;
 mod trim;
 mod upload;
@@ -32,12 +32,12 @@ use host_link::LinkError;
 use swimmer_files::GaitSpec;
 
 pub(crate) use self::access::Access;
-use self::access::Met;
-use self::answers::Doing;
+use self::access::Contact;
 pub(crate) use self::bench::Bench;
-pub(crate) use self::lent::{Heard, LentPort, PortToLend};
+use self::outputs::RobotState;
 use self::port::Pace;
 use self::port_owner::Ask;
+pub(crate) use self::shared_port::{PortEvent, SharedPort, SharedPortOptions};
 pub(crate) use self::upload::table_of;
 use crate::arguments::{gait, period, positive_angle, rate, seconds, time};
 use crate::failure::{Failure, Outcome};
@@ -153,7 +153,7 @@ struct Play {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["gait", "cycles", "period", "detach", "at_most", "attach"])]
     playlist: Option<PathBuf>,
     #[command(flatten)]
-    room: preflight::Room,
+    room: preflight::TankOptions,
     #[command(flatten)]
     owner: Owner,
     /// End after this many cycles; left out, the robot plays until Ctrl-C
@@ -266,13 +266,13 @@ impl Robot {
 }
 
 fn status(access: &Access, output: Output) -> Outcome {
-    match access.meet(Ask::Status, "swimmer robot status", Pace::AsFastAsPossible)? {
-        Met::Relayed(relayed) => {
-            output.answer(&relayed.told());
+    match access.contact(Ask::Status, "swimmer robot status", Pace::AsFastAsPossible)? {
+        Contact::Relayed(relayed) => {
+            output.print(&relayed.into_output());
             Ok(())
         }
-        Met::Line(mut line) => {
-            output.answer(&Doing::of(&mut line.robot)?);
+        Contact::Direct(mut line) => {
+            output.print(&RobotState::of(&mut line.robot)?);
             line.close()
         }
     }

@@ -33,7 +33,7 @@ impl Completions {
         clap_complete::generate(self.shell, &mut super::command(), "swimmer", &mut script);
         let script = String::from_utf8_lossy(&script).into_owned();
         if output.json {
-            output.answer(&Script { script });
+            output.print(&Script { script });
         } else {
             write_all(&script);
         }
@@ -93,7 +93,7 @@ impl Man {
         }
         pages.sort();
         folder.publish()?;
-        output.answer(&Pages {
+        output.print(&Pages {
             folder: self.output,
             pages,
         });

@@ -17,7 +17,7 @@ use crate::new_file::may_be_written;
 use crate::output::Output;
 use crate::progress::Progress;
 use crate::threads;
-use progress::{MergeAnswer, RunAnswer, StatusAnswer};
+use progress::{MergeOutput, RunOutput, StatusOutput};
 
 /// Find the best gaits of many designs, over morphology, fluid, bounds and rates
 ///
@@ -77,7 +77,7 @@ impl Sweep {
             Self::Status(status) => {
                 let plan = Plan::load(&status.folder)?;
                 let found = sweep::status(&plan, &status.folder)?;
-                output.answer(&StatusAnswer(found));
+                output.print(&StatusOutput(found));
                 Ok(())
             }
             Self::Merge(merge) => merge.run(output),
@@ -108,7 +108,7 @@ impl Run {
             },
         )?;
         drop(progress);
-        output.answer(&RunAnswer {
+        output.print(&RunOutput {
             plan: plan.hash(),
             shard: shard.to_string(),
             tasks: plan.tasks(),
@@ -124,7 +124,7 @@ impl Merge {
         may_be_written(&self.output)?;
         let plan = Plan::load(&self.folder)?;
         let merged = sweep::merge(&plan, &self.folder, &self.output)?;
-        output.answer(&MergeAnswer::new(&plan, merged, self.output)?);
+        output.print(&MergeOutput::new(&plan, merged, self.output)?);
         Ok(())
     }
 }

@@ -39,7 +39,7 @@ const OPTIONAL: &str = "
 impl Swimmers {
     pub(crate) fn run(self, output: Output) -> Outcome {
         let Some(name) = self.name else {
-            output.answer(&presets());
+            output.print(&presets());
             return Ok(());
         };
         let Some(preset) = SwimmerFile::preset(&name) else {
@@ -53,7 +53,7 @@ impl Swimmers {
             toml.push_str(OPTIONAL);
         }
         let mut answer = Document::new(toml.trim_end());
-        output.answer(answer.key("name", name).key("toml", toml));
+        output.print(answer.key("name", name).key("toml", toml));
         Ok(())
     }
 }
@@ -128,6 +128,6 @@ impl Gaits {
             answer.row(form, what);
             object! {"form": form, "what": what}
         });
-        output.answer(answer.key("gaits", gaits));
+        output.print(answer.key("gaits", gaits));
     }
 }

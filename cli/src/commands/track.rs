@@ -121,7 +121,7 @@ impl Track {
                 malformed(&stream.tallies()).map_or_else(String::new, |text| format!(": {text}"))
             )));
         }
-        output.answer(&self.answer(survey.summary(), stream.tallies()));
+        output.print(&self.answer(survey.summary(), stream.tallies()));
         Ok(())
     }
 

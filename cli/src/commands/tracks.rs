@@ -63,7 +63,7 @@ impl Tracks {
     /// Reads the file and answers.
     pub(crate) fn run(self, output: Output) -> Outcome {
         let survey = survey_file(&self.file, &self.recording.options())?;
-        output.answer(&TracksOutput {
+        output.print(&TracksOutput {
             file: self.file.display().to_string(),
             survey,
         });

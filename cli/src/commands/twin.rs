@@ -1,7 +1,7 @@
 //! `swimmer twin`: a robot in a virtual tank, in real time, behind a pseudo-terminal or a TCP port.
 
 mod joints;
-mod odd;
+mod servo_deviation;
 
 use std::fmt;
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, ToSocketAddrs as _};
@@ -61,8 +61,8 @@ pub(crate) struct Twin {
     multicast: bool,
     /// True properties of a servo that the robot does not know, as front:sign=-,centre=1512 (µs) or back:slope=0.0287 (rad a µs):
     /// for trying `swimmer robot setup`
-    #[arg(long = "servo", value_name = "JOINT:KEY=VALUE,…", value_parser = odd::servo)]
-    servos: Vec<odd::Servo>,
+    #[arg(long = "servo", value_name = "JOINT:KEY=VALUE,…", value_parser = servo_deviation::servo)]
+    servos: Vec<servo_deviation::ServoDeviation>,
     /// Half width of the servos' dead band, in place of the swimmer file's
     #[arg(long, value_name = "ANGLE", value_parser = dead_band)]
     dead_band: Option<f64>,
@@ -179,7 +179,7 @@ impl Twin {
         })
         .map_err(|error| Failure::Tried(format!("the robot ended: {error}; start it again")))?;
         let recording = robot.world_mut().finish_recording()?;
-        output.answer(&Lived {
+        output.print(&Lived {
             seconds: robot.world().now().as_secs_f64(),
             cycles: (self.robot == Carrier::Twin).then(|| robot.world().cycle_starts().len()),
             track: recording

@@ -4,7 +4,7 @@
 use calibrate::{CampaignData, FitOptions, calibrate_campaign};
 use serde_json::{Value, json};
 use swimmer_files::{Campaign, SwimmerFile};
-use swimmer_lab::calls::{Answer, Lab, call};
+use swimmer_lab::calls::{CallOutput, Lab, call};
 
 /// Files as the page packs them.
 fn packed(files: &[(&str, &str)]) -> Vec<u8> {
@@ -39,8 +39,8 @@ fn campaign(swimmer: &str) -> String {
 
 fn output_of(lab: &mut Lab, name: &str, bytes: &[u8]) -> Result<Value, String> {
     match call(lab, name.as_bytes(), bytes)? {
-        Answer::Json(text) => Ok(serde_json::from_str(&text).unwrap()),
-        Answer::Bytes(_) => Err("bytes".to_owned()),
+        CallOutput::Json(text) => Ok(serde_json::from_str(&text).unwrap()),
+        CallOutput::Bytes(_) => Err("bytes".to_owned()),
     }
 }
 

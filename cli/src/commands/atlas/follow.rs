@@ -1,6 +1,6 @@
 //! Gaits followed as a parameter changes.
 
-mod answer;
+mod output;
 
 use clap::ValueEnum;
 use gait_optimizer::{
@@ -14,7 +14,7 @@ use crate::document::Document;
 use crate::failure::{Failure, Outcome};
 use crate::progress::Progress;
 
-use answer::followed;
+use output::followed;
 
 /// Parameter of a continuation, with its range.
 #[derive(Debug, Clone, Copy, PartialEq)]

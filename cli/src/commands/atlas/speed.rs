@@ -86,7 +86,7 @@ impl Atlas {
             .key_if("best_uncertified", found.best_uncertified)
             .key("seconds", seconds)
             .key_if("picture", picture);
-        output.answer(&answer);
+        output.print(&answer);
         Ok(())
     }
 }

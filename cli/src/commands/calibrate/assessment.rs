@@ -5,16 +5,16 @@ use std::fmt::Write as _;
 use calibrate::assessment::{AssessmentDocument, RepeatsPart, RunPart, SystematicsPart};
 use serde::Serialize;
 
-use super::answer::with_intervals;
-use super::further::{Shown, readable};
+use super::beyond_fit::{ResultTable, readable};
+use super::output::with_intervals;
 use crate::quantity::{self, Table};
 
 /// Assessment in the output of `swimmer calibrate`.
 #[derive(Debug, Clone, Serialize)]
 #[serde(transparent)]
-pub(crate) struct AssessmentAnswer(pub(crate) AssessmentDocument);
+pub(crate) struct AssessmentOutput(pub(crate) AssessmentDocument);
 
-impl std::ops::Deref for AssessmentAnswer {
+impl std::ops::Deref for AssessmentOutput {
     type Target = AssessmentDocument;
 
     fn deref(&self) -> &AssessmentDocument {
@@ -22,7 +22,7 @@ impl std::ops::Deref for AssessmentAnswer {
     }
 }
 
-impl AssessmentAnswer {
+impl AssessmentOutput {
     /// The verdict and its reasons, as the terminal shows them.
     pub(super) fn heading(&self) -> String {
         let mut text = format!("\n\n  verdict: {}", self.verdict);
@@ -48,13 +48,13 @@ impl AssessmentAnswer {
     }
 
     /// Tables: nuisance parameters, error budget, explanations, statistics of the runs.
-    pub(crate) fn shown(&self) -> Vec<Shown> {
+    pub(crate) fn shown(&self) -> Vec<ResultTable> {
         let known = self.systematics.as_ref().map(known);
         let tables = [self.budget(), self.explained(), self.of_runs()];
         known.into_iter().chain(tables).collect()
     }
 
-    fn budget(&self) -> Shown {
+    fn budget(&self) -> ResultTable {
         let mut table = Table::new(["if off by", "", "r_s moves by", "χ moves by", "known to ±"]);
         for line in &self.budget {
             let width = line.width.map_or_else(
@@ -75,7 +75,7 @@ impl AssessmentAnswer {
                 width,
             ]);
         }
-        Shown {
+        ResultTable {
             title: "The budget of systematic errors",
             table,
             notes: vec![
@@ -86,7 +86,7 @@ impl AssessmentAnswer {
         }
     }
 
-    fn explained(&self) -> Shown {
+    fn explained(&self) -> ResultTable {
         let mut table = Table::new(["what may be off", "log-likelihood", "would be", "r_s", "χ"]);
         for explanation in &self.explanations {
             let values = explanation
@@ -101,7 +101,7 @@ impl AssessmentAnswer {
                 format!("{:.3}", explanation.estimate.chi),
             ]);
         }
-        Shown {
+        ResultTable {
             title: "Explanations of the runs, side by side",
             table,
             notes: vec![
@@ -112,7 +112,7 @@ impl AssessmentAnswer {
         }
     }
 
-    fn of_runs(&self) -> Shown {
+    fn of_runs(&self) -> ResultTable {
         let mut table = Table::new([
             "run",
             "Y/X",
@@ -209,7 +209,7 @@ impl AssessmentAnswer {
                 chance(repeats.chance)
             ));
         }
-        Shown {
+        ResultTable {
             title: "How well the model explains the runs",
             table,
             notes,
@@ -227,7 +227,7 @@ fn change(unit: &str, by: f64) -> String {
     }
 }
 
-fn known(systematics: &SystematicsPart) -> Shown {
+fn known(systematics: &SystematicsPart) -> ResultTable {
     let mut table = Table::new(["nuisance parameter", "known", "±", "found", "±", "pull"]);
     for nuisance in &systematics.parameters {
         let of = |value: f64| readable(nuisance.unit, value);
@@ -245,7 +245,7 @@ fn known(systematics: &SystematicsPart) -> Shown {
             format!("{:+.1}", nuisance.pull),
         ]);
     }
-    Shown {
+    ResultTable {
         title: "Nuisance parameters: known and fitted values",
         table,
         notes: vec![

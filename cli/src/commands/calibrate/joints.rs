@@ -3,12 +3,12 @@
 use calibrate::{CampaignFit, Measured, MeasuredServo, RunResult};
 use serde::Serialize;
 
-use super::further::Shown;
+use super::beyond_fit::ResultTable;
 use crate::quantity::Table;
 
 /// Servos of one run, or the mean of all runs: front and back.
 #[derive(Debug, Clone, Serialize)]
-pub(crate) struct JointsAnswer {
+pub(crate) struct JointsOutput {
     front: MeasuredServo,
     back: MeasuredServo,
 }
@@ -21,10 +21,10 @@ pub(crate) struct RunJoints {
     /// Scatter of samples about the mean course, each \[rad\].
     scatter_rad: [f64; 2],
     /// Response of the servos to the command; null if the gait does not determine it.
-    servos: Option<JointsAnswer>,
+    servos: Option<JointsOutput>,
 }
 
-impl From<[MeasuredServo; 2]> for JointsAnswer {
+impl From<[MeasuredServo; 2]> for JointsOutput {
     fn from([front, back]: [MeasuredServo; 2]) -> Self {
         Self { front, back }
     }
@@ -41,13 +41,13 @@ impl RunJoints {
     }
 }
 
-impl JointsAnswer {
+impl JointsOutput {
     pub(super) fn of(found: &CampaignFit) -> Option<Self> {
         found.servos().map(Into::into)
     }
 
     /// Table for people.
-    pub(crate) fn shown(&self) -> Shown {
+    pub(crate) fn shown(&self) -> ResultTable {
         let mut table = Table::new(["measured joint", "gain", "dead band", "offset", "lag"]);
         let with = |measured: Measured, unit: f64, digits: usize, sign: &str| {
             let (value, error) = (measured.value * unit, measured.error * unit);
@@ -69,7 +69,7 @@ impl JointsAnswer {
                     .map_or_else(|| "–".to_owned(), |lag| with(lag, 1e3, 1, " ms")),
             ]);
         }
-        Shown {
+        ResultTable {
             title: "What the servos made of their commands, by the reflectors on the side links",
             table,
             notes: vec![

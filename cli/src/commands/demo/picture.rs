@@ -6,7 +6,7 @@ use swimmer_model::{Gait as _, Pose};
 use twin::Tank;
 
 use super::{BEST, BEST_TRACK, CAMPAIGN, FITTED, Finished, LAB, LINK_LOG, START};
-use crate::commands::calibrate::RunAnswer;
+use crate::commands::calibrate::RunOutput;
 use crate::failure::{Failure, Outcome};
 use crate::report::swimming::{Moment, Swimming};
 use crate::report::{GaitPicture, MeasuredCircle, ModelCircle, Parameter, Report, Track};
@@ -81,7 +81,7 @@ pub(super) fn report(round: &Finished, lab: Option<String>) -> Outcome<Report> {
 }
 
 fn measured(round: &Finished) -> Vec<MeasuredCircle> {
-    let circle = |(gait, run): (&GaitSpec, &RunAnswer)| match gait {
+    let circle = |(gait, run): (&GaitSpec, &RunOutput)| match gait {
         GaitSpec::Circle { amplitude, .. } => Some(MeasuredCircle {
             amplitude: *amplitude,
             cycles: run.cycles.unwrap_or(0),

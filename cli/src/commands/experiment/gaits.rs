@@ -123,7 +123,7 @@ impl<'a> Maker<'a> {
             all.extend(["--swimmer".into(), swimmer.into_os_string()]);
         }
         all.extend(["-o".into(), path.clone().into_os_string()]);
-        crate::answer(all).map_err(|refused| {
+        crate::run_captured(all).map_err(|refused| {
             let text = format!(
                 "gait `{name}`: swimmer optimize {}: {}",
                 words.join(" "),
@@ -272,7 +272,7 @@ pub(super) fn drive(maker: &Maker<'_>) -> Outcome {
             "-o".into(),
             steering.clone().into_os_string(),
         ];
-        crate::answer(words).map_err(|refused| {
+        crate::run_captured(words).map_err(|refused| {
             Failure::Tried(format!("gaits to drive with: {}", refused.reason))
         })?;
         steering

@@ -106,7 +106,7 @@ impl Pack {
             tar.into_inner()?.finish()?.flush()
         })?;
         let bytes = std::fs::metadata(&archive).map_or(0, |data| data.len());
-        output.answer(&PackOutput {
+        output.print(&PackOutput {
             sha256: hash_of(&archive)?,
             archive: archive.display().to_string(),
             files: packed.len(),

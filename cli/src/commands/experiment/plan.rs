@@ -60,7 +60,7 @@ impl PlanSpec {
         write_plan(&draft.join(PLAN), &plan)?;
         let place = folder.place().display().to_string();
         folder.publish()?;
-        output.answer(&PlanOutput {
+        output.print(&PlanOutput {
             folder: place,
             runs: plan.trials.len(),
             tank_time_s: tank_time_s(&plan),

@@ -39,7 +39,7 @@ impl ReportPlan {
         let path = folder.path.join(PAGE);
         write_atomically(&path, html.as_bytes())?;
         write_atomically(&folder.path.join(REPORT), document(&comparison).as_bytes())?;
-        output.answer(&ReportOutput {
+        output.print(&ReportOutput {
             comparison: &comparison,
             report: path.display().to_string(),
         });

@@ -62,7 +62,7 @@ impl RunPlan {
         let (mut file, journal) = JournalFile::open(&folder)?;
         let left = journal.remaining(&folder.plan).len();
         if left == 0 {
-            output.answer(&done(&folder, &journal, 0, 0.0));
+            output.print(&done(&folder, &journal, 0, 0.0));
             return Ok(());
         }
         let number = opened(&journal) + 1;
@@ -123,7 +123,7 @@ impl RunPlan {
         match ending {
             RunEnding::Complete => {
                 let journal = folder.journal()?;
-                output.answer(&done(&folder, &journal, finished, duration));
+                output.print(&done(&folder, &journal, finished, duration));
                 closed
             }
             RunEnding::Interrupted(reason) => Err(Failure::Tried(format!(

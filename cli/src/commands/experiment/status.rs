@@ -40,7 +40,7 @@ impl Status {
         let folder = Folder::of(&self.paths)?;
         let journal = folder.journal()?;
         let failures = folder.plan.trials.iter();
-        output.answer(&StatusOutput {
+        output.print(&StatusOutput {
             folder: folder.path.display().to_string(),
             runs: folder.plan.trials.len(),
             done: journal.finished().len(),

@@ -53,7 +53,7 @@ impl fmt::Display for Token {
 
 /// Resource of an accepted request.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) enum Wanted {
+pub(super) enum PageRequest {
     /// The page, or only its head.
     Page { head_only: bool },
     /// The robot's bytes, over a WebSocket that this key accepts.
@@ -85,7 +85,7 @@ impl Gate {
     ///
     /// # Errors
     /// [`Refusal`].
-    pub(super) fn judge(&self, head: &[u8], here: SocketAddr) -> Result<Wanted, Refusal> {
+    pub(super) fn judge(&self, head: &[u8], here: SocketAddr) -> Result<PageRequest, Refusal> {
         const GARBLED: Refusal = refusal("400 Bad Request", "this is no request of a browser");
         let mut headers = [httparse::EMPTY_HEADER; MOST_HEADERS];
         let mut request = httparse::Request::new(&mut headers);
@@ -104,7 +104,7 @@ impl Gate {
             ));
         }
         match (method, path.split('?').next().unwrap_or_default()) {
-            ("GET" | "HEAD", "/" | "/index.html") => Ok(Wanted::Page {
+            ("GET" | "HEAD", "/" | "/index.html") => Ok(PageRequest::Page {
                 head_only: method == "HEAD",
             }),
             ("GET", LINK) => self.link(&headers, host),
@@ -116,7 +116,7 @@ impl Gate {
         }
     }
 
-    fn link(&self, headers: &Headers<'_>, host: &str) -> Result<Wanted, Refusal> {
+    fn link(&self, headers: &Headers<'_>, host: &str) -> Result<PageRequest, Refusal> {
         if let Some(origin) = headers.one("origin")?
             && origin != "null"
             && origin.strip_prefix("http://") != Some(host)
@@ -148,7 +148,7 @@ impl Gate {
                     && headers.says("connection", "upgrade")
                     && headers.one("sec-websocket-version")? == Some("13") =>
             {
-                Ok(Wanted::Link {
+                Ok(PageRequest::Link {
                     accept: derive_accept_key(key.as_bytes()),
                 })
             }

@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use host_link::robot::Halt;
 use serde::{Deserialize, Serialize};
 
-use crate::commands::robot::{Heard, LentPort};
+use crate::commands::robot::{PortEvent, SharedPort};
 
 /// Longest wait for bytes of the robot in one turn, and so the longest delay of a stop from a page.
 const TURN: Duration = Duration::from_millis(2);
@@ -53,13 +53,13 @@ pub(super) enum ToPage {
     /// Bytes of the robot.
     Bytes(Arc<[u8]>),
     /// State of wheel and port.
-    Says(Says),
+    ServerMessage(ServerMessage),
 }
 
 /// Request of a page in words.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(tag = "ask", rename_all = "lowercase", deny_unknown_fields)]
-pub(super) enum Ask {
+pub(super) enum PageMessage {
     /// Request for the wheel, granted if no page drives.
     Drive,
     /// To let others drive.
@@ -75,7 +75,7 @@ pub(super) enum Ask {
 /// State of wheel and port, in words.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "told")]
-pub(super) enum Says {
+pub(super) enum ServerMessage {
     /// Driver: this page, another one, or nobody.
     Wheel {
         /// This page drives.
@@ -174,7 +174,7 @@ struct Pages {
 }
 
 /// Runs until `go_on` returns false, or until no page can connect any more. Then the robot is stopped if a page drove it.
-pub(super) fn run(port: &mut LentPort, inbox: &Inbox, go_on: impl Fn() -> bool) {
+pub(super) fn run(port: &mut SharedPort, inbox: &Inbox, go_on: impl Fn() -> bool) {
     let mut pages = Pages {
         known: BTreeMap::new(),
         driver: None,
@@ -186,13 +186,13 @@ pub(super) fn run(port: &mut LentPort, inbox: &Inbox, go_on: impl Fn() -> bool) 
             pages.stop(stop, port);
         }
         match port.read(&mut buf, TURN) {
-            Heard::Bytes(0) => {}
-            Heard::Bytes(count) => {
+            PortEvent::Bytes(0) => {}
+            PortEvent::Bytes(count) => {
                 let bytes = buf.get(..count).unwrap_or_default();
                 pages.tell_all(&ToPage::Bytes(bytes.into()));
             }
-            Heard::Gone(why) => pages.tell_all(&of_port(port, Some(why))),
-            Heard::Back => pages.tell_all(&of_port(port, None)),
+            PortEvent::Gone(why) => pages.tell_all(&of_port(port, Some(why))),
+            PortEvent::Back => pages.tell_all(&of_port(port, None)),
         }
         for _ in 0..MOST_A_TURN {
             match inbox.words.try_recv() {
@@ -204,7 +204,7 @@ pub(super) fn run(port: &mut LentPort, inbox: &Inbox, go_on: impl Fn() -> bool) 
         for (id, frames) in inbox.frames.try_iter().take(MOST_A_TURN) {
             // Another page may have got the wheel since.
             if pages.driver == Some(id)
-                && let Some(Heard::Gone(why)) = port.write(&frames)
+                && let Some(PortEvent::Gone(why)) = port.write(&frames)
             {
                 pages.tell_all(&of_port(port, Some(why)));
             }
@@ -219,8 +219,8 @@ pub(super) fn run(port: &mut LentPort, inbox: &Inbox, go_on: impl Fn() -> bool) 
     }
 }
 
-fn of_port(port: &LentPort, why: Option<String>) -> ToPage {
-    ToPage::Says(Says::Port {
+fn of_port(port: &SharedPort, why: Option<String>) -> ToPage {
+    ToPage::ServerMessage(ServerMessage::Port {
         name: port.name().to_owned(),
         open: port.is_open(),
         why,
@@ -229,7 +229,7 @@ fn of_port(port: &LentPort, why: Option<String>) -> ToPage {
 }
 
 impl Pages {
-    fn take(&mut self, id: PageId, word: FromPage, port: &LentPort) {
+    fn take(&mut self, id: PageId, word: FromPage, port: &SharedPort) {
         match word {
             FromPage::Came(page) => {
                 self.known.insert(id, page);
@@ -249,14 +249,14 @@ impl Pages {
         }
     }
 
-    fn stop(&mut self, stop: FromPageStop, port: &mut LentPort) {
+    fn stop(&mut self, stop: FromPageStop, port: &mut SharedPort) {
         match stop {
             FromPageStop::Halt(halt) => {
                 port.stop(halt);
-                self.tell_all(&ToPage::Says(Says::Stopped));
+                self.tell_all(&ToPage::ServerMessage(ServerMessage::Stopped));
             }
             FromPageStop::Frames(frames) => {
-                if let Some(Heard::Gone(why)) = port.write(&frames) {
+                if let Some(PortEvent::Gone(why)) = port.write(&frames) {
                     self.tell_all(&of_port(port, Some(why)));
                 }
             }
@@ -282,7 +282,10 @@ impl Pages {
         let free = self.driver.is_none();
         for id in self.known.keys().copied().collect::<Vec<_>>() {
             let yours = self.driver == Some(id);
-            self.tell(id, &ToPage::Says(Says::Wheel { yours, free }));
+            self.tell(
+                id,
+                &ToPage::ServerMessage(ServerMessage::Wheel { yours, free }),
+            );
         }
     }
 

@@ -11,8 +11,8 @@ use tungstenite::protocol::{Role, WebSocketConfig};
 use tungstenite::{Error, Message, WebSocket};
 
 use super::callers::{Caller, CallerAdmission};
-use super::gate::{Gate, PROTOCOL, Refusal, Wanted};
-use super::hub::{Ask, Ended, FromPage, FromPageStop, PageId, ToHub, ToPage};
+use super::gate::{Gate, PROTOCOL, PageRequest, Refusal};
+use super::hub::{Ended, FromPage, FromPageStop, PageId, PageMessage, ToHub, ToPage};
 
 /// A head longer than this is no browser's.
 const LONGEST_HEAD: usize = 8 << 10;
@@ -51,17 +51,17 @@ impl Server {
         let head = read_head(&mut stream)?;
         let here = stream.local_addr()?;
         match self.gate.judge(&head, here) {
-            Ok(Wanted::Page { head_only }) => {
+            Ok(PageRequest::Page { head_only }) => {
                 let body: &[u8] = if head_only { &[] } else { &self.page };
                 let length = self.page.len();
                 answer(&mut stream, "200 OK", "text/html", length, body)
             }
-            Ok(Wanted::Link { .. }) if caller.becomes_page() == CallerAdmission::None => {
+            Ok(PageRequest::Link { .. }) if caller.becomes_page() == CallerAdmission::None => {
                 let body = "too many pages have the link open: close some\n";
                 let (status, kind) = ("503 Service Unavailable", "text/plain; charset=utf-8");
                 answer(&mut stream, status, kind, body.len(), body.as_bytes())
             }
-            Ok(Wanted::Link { accept }) => {
+            Ok(PageRequest::Link { accept }) => {
                 write!(
                     stream,
                     "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n\
@@ -131,7 +131,7 @@ impl Server {
                     Message::Text(text) => {
                         let ask = serde_json::from_str(&text)
                             .map_err(|_| fails(io::ErrorKind::InvalidData))?;
-                        self.asked(id, ask, now, life).map_err(ended)?;
+                        self.handle_message(id, ask, now, life).map_err(ended)?;
                     }
                     Message::Close(_) => return Err(Ok(())),
                     Message::Ping(_) | Message::Pong(_) | Message::Frame(_) => {}
@@ -149,7 +149,7 @@ impl Server {
         for _ in 0..MOST_A_TURN {
             let message = match messages.try_recv() {
                 Ok(ToPage::Bytes(bytes)) => Message::Binary(bytes.to_vec().into()),
-                Ok(ToPage::Says(said)) => Message::Text(
+                Ok(ToPage::ServerMessage(said)) => Message::Text(
                     serde_json::to_string(&said)
                         .map_err(|error| fails(io::Error::other(error)))?
                         .into(),
@@ -163,13 +163,19 @@ impl Server {
         Ok(())
     }
 
-    fn asked(&self, id: PageId, ask: Ask, now: Instant, life: &mut Life) -> Result<(), Ended> {
+    fn handle_message(
+        &self,
+        id: PageId,
+        ask: PageMessage,
+        now: Instant,
+        life: &mut Life,
+    ) -> Result<(), Ended> {
         match ask {
-            Ask::Stop => self.hub.stop(id, FromPageStop::Halt(Halt::Stop)),
-            Ask::Estop => self.hub.stop(id, FromPageStop::Halt(Halt::EStop)),
-            Ask::Drive => self.hub.word(id, FromPage::Wheel { wanted: true }),
-            Ask::Watch => self.hub.word(id, FromPage::Wheel { wanted: false }),
-            Ask::Here => {
+            PageMessage::Stop => self.hub.stop(id, FromPageStop::Halt(Halt::Stop)),
+            PageMessage::Estop => self.hub.stop(id, FromPageStop::Halt(Halt::EStop)),
+            PageMessage::Drive => self.hub.word(id, FromPage::Wheel { wanted: true }),
+            PageMessage::Watch => self.hub.word(id, FromPage::Wheel { wanted: false }),
+            PageMessage::Here => {
                 life.here(now);
                 Ok(())
             }

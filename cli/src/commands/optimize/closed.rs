@@ -3,7 +3,7 @@
 use gait_optimizer::{AtlasProblem, Bounds, Objective, OptimalGait, Optimum, atlas_watched};
 
 use super::Task;
-use super::answer::tell_arcs;
+use super::output::add_arcs;
 use crate::document::Document;
 use crate::failure::{Failure, Outcome};
 use crate::playable::searched;
@@ -60,9 +60,9 @@ impl Closed {
     }
 
     /// Adds displacement, arcs and the class of gaits.
-    pub(super) fn tell(&self, answer: &mut Document, objective: Objective) {
+    pub(super) fn add(&self, document: &mut Document, objective: Objective) {
         let gait = self.gait();
-        answer
+        document
             .key("displacement_over_length", gait.displacement_over_length)
             .key("displacement_m", gait.displacement)
             .key("lateral_over_length", gait.lateral_over_length)
@@ -78,8 +78,8 @@ impl Closed {
                 ),
             )
             .row("net rotation", quantity::angle(gait.rotation));
-        tell_arcs(answer, &gait.arcs);
-        answer.row(
+        add_arcs(document, &gait.arcs);
+        document.row(
             "best of",
             format!(
                 "{} certified closed curves from {STARTS} starts: the side links differ, so no gait has the paper's symmetries; \

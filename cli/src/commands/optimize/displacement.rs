@@ -4,11 +4,11 @@ use gait_optimizer::{
     DisplacementError, DisplacementProblem, Heading, OptimalGait, displacement, robust_displacement,
 };
 
-use super::answer::{say_if_beyond, tell_quarter};
 use super::closed::Closed;
+use super::output::{add_quarter, say_if_beyond};
 use super::robust::{Robustly, refused, robust_gait};
 use super::timing::ServoTiming;
-use super::{Found, Objective, Task};
+use super::{Objective, SearchResult, Task};
 use crate::bounds::QuarterBounds;
 use crate::document::Document;
 use crate::failure::{Failure, Outcome};
@@ -33,7 +33,7 @@ pub(crate) struct Displacement {
 }
 
 impl Objective for Displacement {
-    fn search(&self, task: &Task) -> Outcome<Found> {
+    fn search(&self, task: &Task) -> Outcome<SearchResult> {
         let problem = DisplacementProblem {
             bounds: self.bounds.of(&task.file),
             heading: self.sign,
@@ -58,9 +58,9 @@ impl Objective for Displacement {
             say_if_beyond(task, found.gait());
             let timed = self.timing.of(task, found.gait())?;
             let title = format!("{}, a local optimum of displacement", task.file.name);
-            let mut answer = Document::new(title);
-            found.tell(&mut answer, objective);
-            return Ok(Found::gait(answer, task, found.gait(), timed));
+            let mut document = Document::new(title);
+            found.add(&mut document, objective);
+            return Ok(SearchResult::gait(document, task, found.gait(), timed));
         }
         let search = |bounds| Ok(displacement(&DisplacementProblem { bounds, ..problem })?);
         let gait = task.timed(|| {
@@ -69,15 +69,15 @@ impl Objective for Displacement {
         })?;
         say_if_beyond(task, &gait);
         let timed = self.timing.of(task, &gait)?;
-        let mut answer = Document::new(format!(
+        let mut document = Document::new(format!(
             "{}, a local optimum of displacement",
             task.file.name
         ));
-        tell_quarter(&mut answer, &gait);
-        answer
+        add_quarter(&mut document, &gait);
+        document
             .key_if("extremals", gait.extremals)
             .row("best of", class(&gait, self.sign));
-        Ok(Found::gait(answer, task, &gait, timed))
+        Ok(SearchResult::gait(document, task, &gait, timed))
     }
 }
 

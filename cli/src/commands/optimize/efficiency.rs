@@ -7,11 +7,11 @@ use gait_optimizer::{
 };
 use swimmer_files::Bounds;
 
-use super::answer::{say_if_beyond, tell_quarter};
 use super::closed::Closed;
+use super::output::{add_quarter, say_if_beyond};
 use super::robust::{Robustly, refused, robust_gait};
 use super::timing::{ServoTiming, Timed};
-use super::{Found, Objective, Task};
+use super::{Objective, SearchResult, Task};
 use crate::bounds::WholeBounds;
 use crate::document::Document;
 use crate::failure::{Failure, Outcome};
@@ -60,7 +60,7 @@ enum How {
 }
 
 impl Objective for Efficiency {
-    fn search(&self, task: &Task) -> Outcome<Found> {
+    fn search(&self, task: &Task) -> Outcome<SearchResult> {
         let branch = match self.gait {
             Which::Small => Branch::Small,
             Which::Large => Branch::Large,
@@ -102,14 +102,14 @@ impl Objective for Efficiency {
         let gait = task.timed(|| searched(robot, problem.bounds, |gait| gait, search))?;
         say_if_beyond(task, &gait);
         let timed = self.timing.of(task, &gait)?;
-        let answer = told(&task.file.name, &gait, timed.as_ref());
-        Ok(Found::gait(answer, task, &gait, timed))
+        let document = document_of(&task.file.name, &gait, timed.as_ref());
+        Ok(SearchResult::gait(document, task, &gait, timed))
     }
 }
 
 impl Efficiency {
     /// Best gait of the closed-curve search, for side links that differ.
-    fn without_symmetry(&self, task: &Task, bounds: Bounds) -> Outcome<Found> {
+    fn without_symmetry(&self, task: &Task, bounds: Bounds) -> Outcome<SearchResult> {
         if matches!(self.gait, Which::Large) || !matches!(self.method, How::Auto) {
             return Err(Failure::BadInput(
                 "--gait large and --method are of gaits with the paper's symmetries, and the side links of this swimmer differ: \
@@ -123,33 +123,33 @@ impl Efficiency {
         say_if_beyond(task, gait);
         let timed = self.timing.of(task, gait)?;
         let name = &task.file.name;
-        let mut answer = Document::new(format!("{name}, a local optimum of efficiency"));
+        let mut document = Document::new(format!("{name}, a local optimum of efficiency"));
         let as_written = timed
             .as_ref()
             .map_or(gait.efficiency, |timed| timed.efficiency);
-        answer
+        document
             .key("efficiency", as_written)
             .row("efficiency ξ", format!("{as_written:.12}"));
-        found.tell(&mut answer, objective);
-        Ok(Found::gait(answer, task, gait, timed))
+        found.add(&mut document, objective);
+        Ok(SearchResult::gait(document, task, gait, timed))
     }
 }
 
 /// Output of a gait: its efficiency is that of the written gait.
-fn told(name: &str, gait: &OptimalGait, timed: Option<&Timed>) -> Document {
-    let mut answer = Document::new(format!("{name}, a local optimum of efficiency"));
+fn document_of(name: &str, gait: &OptimalGait, timed: Option<&Timed>) -> Document {
+    let mut document = Document::new(format!("{name}, a local optimum of efficiency"));
     let as_written = timed.map_or(gait.efficiency, |timed| timed.efficiency);
-    answer
+    document
         .key("efficiency", as_written)
         .row("efficiency ξ", format!("{as_written:.12}"));
     if timed.is_some() {
-        answer
+        document
             .key("efficiency_constant_power", gait.efficiency)
             .row("constant power", format!("ξ = {:.12}", gait.efficiency));
     }
-    tell_quarter(&mut answer, gait);
+    add_quarter(&mut document, gait);
     if let Some(figures) = gait.efficiency_figures {
-        answer
+        document
             // Max-norm of the shooting conditions.
             .key("residual", figures.residual)
             .key("power_variation", figures.power_variation)
@@ -162,18 +162,20 @@ fn told(name: &str, gait: &OptimalGait, timed: Option<&Timed>) -> Document {
             } else {
                 "above 1e-10"
             };
-            answer.row("residual", bound).row("method", figures.method);
+            document
+                .row("residual", bound)
+                .row("method", figures.method);
         }
         if let Some(direct) = figures.direct_efficiency.filter(|_| verbose()) {
             let deviation = quantity::small((direct / gait.efficiency - 1.0).abs());
-            answer.row("before polish", format!("ξ off by {deviation}"));
+            document.row("before polish", format!("ξ off by {deviation}"));
         }
     }
-    answer.row(
+    document.row(
         "best of",
         "the gaits with the paper's symmetries, in one neighbourhood; `swimmer atlas --objective efficiency` looks beyond",
     );
-    answer
+    document
 }
 
 impl From<EfficiencyError> for Failure {
@@ -224,15 +226,15 @@ mod tests {
         };
         let found = |max_rate, period| {
             let timed = ServoTiming { max_rate, period }.of(&task, &gait).unwrap();
-            let answer = told("purcell", &gait, timed.as_ref());
-            let found = Found::gait(answer, &task, &gait, timed);
+            let document = document_of("purcell", &gait, timed.as_ref());
+            let found = SearchResult::gait(document, &task, &gait, timed);
             let file = AnyGait::from_file(&found.gaits[0].1).unwrap();
             let model = Model::new(&Swimmer::purcell()).unwrap();
             let swum = swim(&model, &file, &Tolerance::default()).efficiency();
-            let keys = serde_json::to_value(&found.answer).unwrap();
+            let keys = serde_json::to_value(&found.document).unwrap();
             let efficiency = keys["efficiency"].as_f64().unwrap();
             let untimed = keys.get("efficiency_constant_power").cloned();
-            (efficiency, untimed, swum, found.answer.to_string())
+            (efficiency, untimed, swum, found.document.to_string())
         };
         let (free, untimed, swum, _) = found(None, None);
         assert!((free / swum - 1.0).abs() < 1e-6);

@@ -1,11 +1,11 @@
 //! `swimmer optimize`: one subcommand for each objective. [`Search`] loads the swimmer, writes the gait and prints the output; each
 //! objective has a file with its options, its search and the rows of its output.
 
-pub(crate) mod answer;
 mod closed;
 mod displacement;
 mod efficiency;
 mod front;
+pub(crate) mod output;
 mod pace;
 mod passive;
 mod robust;
@@ -68,7 +68,7 @@ pub(crate) trait Objective: clap::Args {
     ///
     /// # Errors
     /// Those of the search; nothing has been written then.
-    fn search(&self, task: &Task) -> Outcome<Found>;
+    fn search(&self, task: &Task) -> Outcome<SearchResult>;
 }
 
 /// Swimmer of a search, and the file to write.
@@ -101,8 +101,8 @@ impl Task<'_> {
 }
 
 /// Result of a search.
-pub(crate) struct Found {
-    answer: Document,
+pub(crate) struct SearchResult {
+    document: Document,
     /// Gait files to write, with their names in a folder.
     gaits: Vec<(String, GaitFile)>,
 }
@@ -143,7 +143,7 @@ impl<O: Objective> Search<O> {
             }
         }
         folder.map_or(Ok(()), NewFolder::publish)?;
-        output.answer(&found.answer);
+        output.print(&found.document);
         Ok(())
     }
 }

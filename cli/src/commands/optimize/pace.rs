@@ -19,11 +19,11 @@ pub(super) fn at_pace(
 ) -> Document {
     let length = file.swimmer.total_length();
     let [pace, way] = [speed, distance].map(|one| quantity::length(one * length));
-    let mut answer = Document::new(format!(
+    let mut document = Document::new(format!(
         "{}: the {kind} gait swims {way} in {period:.2} s, {pace} a second",
         file.name
     ));
-    answer
+    document
         .key("speed_over_length_per_s", speed)
         .key("speed_m_per_s", speed * length)
         .key("displacement_over_length", distance)
@@ -38,12 +38,12 @@ pub(super) fn at_pace(
             format!("{way} per cycle   |d|/L = {distance:.10}"),
         )
         .row("period", format!("{period:.6} s"));
-    answer
+    document
 }
 
 /// Adds how a gait of this period is played by these servos, and says where it is beyond the robot of the file.
-pub(super) fn tell_as_played(
-    answer: &mut Document,
+pub(super) fn add_as_played(
+    document: &mut Document,
     file: &SwimmerFile,
     servo: Option<ServoFile>,
     (gait, period): (&OptimalGait, f64),
@@ -55,7 +55,7 @@ pub(super) fn tell_as_played(
     let period = played.as_ref().map_or(period, |played| played.period_s);
     say_if_beyond(file, &curve, (period * 1e3).ceil() / 1e3);
     if let Some(played) = played {
-        answer.row(
+        document.row(
             "as played",
             format!(
                 "{} a second, a cycle in {:.3} s: table, ticks and servos take {:.2} %",
@@ -64,6 +64,6 @@ pub(super) fn tell_as_played(
                 played.lost_share * 100.0
             ),
         );
-        answer.key("played", played);
+        document.key("played", played);
     }
 }

@@ -10,9 +10,9 @@ use gait_optimizer::{
 use swimmer_files::{ArcKind, SwimmerFile};
 use swimmer_model::{Gait as _, Model};
 
-use super::answer::{say_if_beyond, tell_figures, tell_quarter};
+use super::output::{add_figures, add_quarter, say_if_beyond};
 use super::timing::ServoTiming;
-use super::{Found, Task};
+use super::{SearchResult, Task};
 use crate::arguments::gain;
 use crate::bounds::Given;
 use crate::document::{Document, object};
@@ -93,7 +93,7 @@ pub(super) fn refused(error: RobustError, bounds: &impl Given) -> Failure {
     match failure {
         Failure::BadInput(text) => Failure::BadInput(text + &leave),
         Failure::Tried(text) => Failure::Tried(text + &leave),
-        answered @ Failure::Answered(_) => answered,
+        answered @ Failure::AlreadyPrinted(_) => answered,
     }
 }
 
@@ -118,35 +118,35 @@ pub(super) fn robust_gait(
     (objective, quantity): (&str, &'static str),
     found: RobustGait,
     timing: &ServoTiming,
-) -> Outcome<Found> {
+) -> Outcome<SearchResult> {
     let RobustGait {
         gait, robustness, ..
     } = found;
     let written = as_written(&gait);
     say_if_beyond(task, &gait);
     let timed = timing.of(task, &written)?;
-    let mut answer = Document::new(format!("{}, most {objective}, robust", task.file.name));
+    let mut document = Document::new(format!("{}, most {objective}, robust", task.file.name));
     // Of the estimates' swimmer.
     let efficiency = match &timed {
         Some(timed) if gait.objective == Objective::Efficiency => timed.efficiency,
         _ => gait.efficiency,
     };
-    answer.key("efficiency", efficiency);
-    tell_quarter(&mut answer, &gait);
-    tell_robustness(&mut answer, &robustness, quantity);
+    document.key("efficiency", efficiency);
+    add_quarter(&mut document, &gait);
+    add_robustness(&mut document, &robustness, quantity);
     // The gradient of ln ξ̄ [1/rad] for the members as they are weighed: no single swimmer's shooting conditions hold. The power is
     // that of the estimates' swimmer: one timing for all members is at constant power for none.
-    tell_figures(
-        &mut answer,
+    add_figures(
+        &mut document,
         &gait,
         Condition::RobustGradient,
         power_variation,
     );
-    Ok(Found::gait(answer, task, &written, timed))
+    Ok(SearchResult::gait(document, task, &written, timed))
 }
 
 /// Adds cost and benefit of robustness, the members of the worst case, and the differences from the nominal optimum.
-pub(super) fn tell_robustness(answer: &mut Document, found: &Robustness, quantity: &'static str) {
+pub(super) fn add_robustness(document: &mut Document, found: &Robustness, quantity: &'static str) {
     let (robust, nominal) = (&found.values, &found.nominal);
     let [crossing, nominal_crossing] = found.links_cross;
     let values = |values: &Values| object! {"nominal": values.nominal, "worst": values.worst, "mean": values.mean};
@@ -158,7 +158,7 @@ pub(super) fn tell_robustness(answer: &mut Document, found: &Robustness, quantit
             "multiplier": holder.multiplier,
         }
     };
-    answer.key(
+    document.key(
         "robust",
         object! {
             "over": match found.over {
@@ -181,7 +181,7 @@ pub(super) fn tell_robustness(answer: &mut Document, found: &Robustness, quantit
         ("worst case", robust.worst, nominal.worst),
         ("mean", robust.mean, nominal.mean),
     ] {
-        answer.row(
+        document.row(
             name,
             format!(
                 "{quantity} = {ours:.8}, the nominal optimum {theirs:.8} ({:+.3} %)",
@@ -195,7 +195,7 @@ pub(super) fn tell_robustness(answer: &mut Document, found: &Robustness, quantit
         } else {
             format!(", gain {:.4}", holder.gain)
         };
-        answer.row(
+        document.row(
             "held by",
             format!(
                 "r_s = {:.3} mm, χ = {:.4}{gain} (multiplier {:.3})",
@@ -206,13 +206,13 @@ pub(super) fn tell_robustness(answer: &mut Document, found: &Robustness, quantit
         );
     }
     if found.off_branch {
-        answer.row(
+        document.row(
             "note",
             "this gait lies on another branch than the nominal optimum, which is not the best gait near it",
         );
     }
     if crossing > nominal_crossing + 1e-6 {
-        answer.row(
+        document.row(
             "note",
             format!(
                 "its links cross on {:.1} % of the cycle at most, those of the nominal optimum on {:.1} %",

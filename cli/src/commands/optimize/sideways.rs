@@ -2,8 +2,8 @@
 
 use gait_optimizer::{SidewaysError, SidewaysProblem, sideways};
 
-use super::answer::say_if_beyond;
-use super::{Found, Objective, Task};
+use super::output::say_if_beyond;
+use super::{Objective, SearchResult, Task};
 use crate::bounds::WholeBounds;
 use crate::document::Document;
 use crate::failure::{Failure, Outcome};
@@ -25,7 +25,7 @@ pub(crate) struct Sideways {
 impl Objective for Sideways {
     const WRITES: &'static str = "Write the gait, at constant power, as a gait file";
 
-    fn search(&self, task: &Task) -> Outcome<Found> {
+    fn search(&self, task: &Task) -> Outcome<SearchResult> {
         let problem = SidewaysProblem {
             bounds: self.bounds.of(&task.file),
             threads: threads::available(),
@@ -44,11 +44,11 @@ impl Objective for Sideways {
         let gait = &found.gait;
         say_if_beyond(task, gait);
         let signed = |value: f64| (value * 1e9).round() / 1e9 + 0.0;
-        let mut answer = Document::new(format!(
+        let mut document = Document::new(format!(
             "{}, a local optimum of displacement sideways",
             task.file.name
         ));
-        answer
+        document
             // Across the heading at the first sample, positive, and along it.
             .key("lateral_over_length", found.lateral_over_length)
             .key("displacement_over_length", gait.displacement_over_length)
@@ -74,7 +74,7 @@ impl Objective for Sideways {
                 found.loops
             ),
         );
-        Ok(Found::gait(answer, task, gait, None))
+        Ok(SearchResult::gait(document, task, gait, None))
     }
 }
 

@@ -5,11 +5,11 @@ use gait_optimizer::{
 };
 use swimmer_files::{ServoFile, SwimmerFile};
 
-use super::answer::tell_arcs;
 use super::front::FrontFile;
-use super::pace::{SEARCHING, at_pace, tell_as_played};
-use super::robust::{Robustly, as_written, refused, tell_robustness};
-use super::{Found, Objective, Task};
+use super::output::add_arcs;
+use super::pace::{SEARCHING, add_as_played, at_pace};
+use super::robust::{Robustly, add_robustness, as_written, refused};
+use super::{Objective, SearchResult, Task};
 use crate::arguments::{rate, seconds};
 use crate::bounds::WholeBounds;
 use crate::document::Document;
@@ -64,7 +64,7 @@ enum Heading {
 impl Objective for Speed {
     const WRITES: &'static str = "Write the gait, timed as it shall run, as a gait file";
 
-    fn search(&self, task: &Task) -> Outcome<Found> {
+    fn search(&self, task: &Task) -> Outcome<SearchResult> {
         if let Some(front) = &self.front {
             may_be_written(&front.path)?;
         }
@@ -106,45 +106,50 @@ impl Objective for Speed {
             Some(_) => ("robust fastest", &as_written(&found.gait)),
             None => ("fastest", &found.gait),
         };
-        let mut answer = told(kind, file, &found);
+        let mut document = document_of(kind, file, &found);
         if let Some(robustness) = &robustness {
-            tell_robustness(&mut answer, robustness, "|d|/(L T)");
+            add_robustness(&mut document, robustness, "|d|/(L T)");
         }
         if robustness.is_none() && self.period.is_none() && heading != HeadingRule::Any {
-            tell_any_heading(&mut answer, &problem, found.speed_over_length)?;
+            add_any_heading(&mut document, &problem, found.speed_over_length)?;
         }
         let servo = file
             .servo
             .or(self.bounds.playable().then(ServoFile::default));
-        tell_as_played(&mut answer, file, servo, (gait, found.period - found.rest));
+        add_as_played(
+            &mut document,
+            file,
+            servo,
+            (gait, found.period - found.rest),
+        );
         if let (Some(place), Some(farthest)) = (&self.front, &farthest) {
-            place.write(farthest, file, &mut answer)?;
+            place.write(farthest, file, &mut document)?;
         }
-        Ok(Found::gait(answer, task, gait, None))
+        Ok(SearchResult::gait(document, task, gait, None))
     }
 }
 
 /// Adds the speed of the fastest gait of any heading to the output of a gait with a prescribed heading.
-fn tell_any_heading(answer: &mut Document, led: &SpeedProblem, speed: f64) -> Outcome<()> {
+fn add_any_heading(document: &mut Document, led: &SpeedProblem, speed: f64) -> Outcome<()> {
     let any = fastest(&led.led(HeadingRule::Any))?.speed_over_length;
-    answer.key("any_heading_speed_over_length_per_s", any);
+    document.key("any_heading_speed_over_length_per_s", any);
     let more = any / speed - 1.0;
     if more > 1e-6 {
-        let told = format!(
+        let bound = format!(
             "{:.2} % faster: long cycles that tack come near it",
             more * 100.0
         );
-        answer.row("any heading", told);
+        document.row("any heading", bound);
     }
     Ok(())
 }
 
 /// Output of a gait of this kind, without robustness, servos and front.
-fn told(kind: &str, file: &SwimmerFile, found: &Fastest) -> Document {
+fn document_of(kind: &str, file: &SwimmerFile, found: &Fastest) -> Document {
     let speed = found.speed_over_length;
     let way = found.distance_over_length;
-    let mut answer = at_pace(kind, file, (speed, way), found.period);
-    answer
+    let mut document = at_pace(kind, file, (speed, way), found.period);
+    document
         // Of the displacement against the cycle's mean heading.
         .key("heading_rad", found.heading)
         .key("rotation_rad", found.gait.rotation)
@@ -157,16 +162,16 @@ fn told(kind: &str, file: &SwimmerFile, found: &Fastest) -> Document {
             format!("from {} of {} starts", found.found, found.starts),
         );
     if let Some(moves) = found.gait.optimal_period {
-        answer.key("rest_s", found.rest);
+        document.key("rest_s", found.rest);
         if found.rest > 0.0 {
-            answer.row(
+            document.row(
                 "rests",
                 format!("{:.6} s after a cycle of {moves:.6} s", found.rest),
             );
         }
     }
-    tell_arcs(&mut answer, &found.gait.arcs);
-    answer
+    add_arcs(&mut document, &found.gait.arcs);
+    document
         // Fractions of the period where a servo turns round or stops, and how many a cycle may have.
         .key("corners", found.gait.corners().to_vec())
         .key("max_corners", SpeedProblem::MAX_CORNERS)
@@ -179,7 +184,7 @@ fn told(kind: &str, file: &SwimmerFile, found: &Fastest) -> Document {
         .key("uncertified_speed_over_length_per_s", found.uncertified);
     let better = |other: f64| format!("{:.4} % faster", (other / speed - 1.0) * 100.0);
     if let Some(longer) = found.longer {
-        answer.row(
+        document.row(
             "longer cycle",
             format!(
                 "one of more than {} corners is {}",
@@ -189,7 +194,7 @@ fn told(kind: &str, file: &SwimmerFile, found: &Fastest) -> Document {
         );
     }
     if let Some(uncertified) = found.uncertified {
-        answer.row(
+        document.row(
             "not certified",
             format!(
                 "another chain of arcs is {}, but meets not all conditions",
@@ -197,7 +202,7 @@ fn told(kind: &str, file: &SwimmerFile, found: &Fastest) -> Document {
             ),
         );
     }
-    answer
+    document
 }
 
 impl From<SpeedError> for Failure {

@@ -4,7 +4,7 @@ use gait_optimizer::{Joined, SpeedProblem, SteerProblem, Steering, steer};
 use swimmer_files::SwimmerFile;
 use swimmer_model::Pose;
 
-use super::{Found, Objective, Task};
+use super::{Objective, SearchResult, Task};
 use crate::arguments::{angle, rate};
 use crate::bounds::WholeBounds;
 use crate::document::Document;
@@ -87,44 +87,44 @@ impl Objective for Steer {
     const FOLDER: bool = true;
     const WRITES: &'static str = "Write the six gaits into this folder";
 
-    fn search(&self, task: &Task) -> Outcome<Found> {
+    fn search(&self, task: &Task) -> Outcome<SearchResult> {
         let file = &task.file;
         let steering = task.timed(|| self.find(file))?;
         let [one, two] = steering.shape.map(quantity::angle);
-        let mut answer = Document::new(format!(
+        let mut document = Document::new(format!(
             "{}: six gaits that join at ({one}, {two}), the best of {} shapes",
             file.name, steering.shapes
         ));
         let gaits = named(&steering).map(|(name, joined, backwards)| {
             let file_name = format!("{name}.gait");
             let mut gait = Document::default();
-            tell(&mut gait, &mut answer, file, (name, joined, backwards));
+            add(&mut gait, &mut document, file, (name, joined, backwards));
             gait.key_if("gait", task.output.map(|folder| folder.join(&file_name)));
             (gait, (file_name, joined.gait_file(&file.name, backwards)))
         });
-        let (told, gaits): (Vec<_>, Vec<_>) = gaits.into_iter().unzip();
-        answer
+        let (documents, gaits): (Vec<_>, Vec<_>) = gaits.into_iter().unzip();
+        document
             // Where the gaits join, and how many shapes were tried.
             .key("shape_rad", steering.shape)
             .key("shapes", steering.shapes)
             // The largest that the gait that turns was given, where it is kept from where the side links come near each other.
             .key("turning_max_angle_rad", steering.turning_angle)
-            .key("gaits", told)
+            .key("gaits", documents)
             .key("seconds", task.seconds.get());
         if let Some(angle) = steering.turning_angle {
-            answer.row(
+            document.row(
                 "turns within",
                 format!("{}, where side links stay apart", quantity::angle(angle)),
             );
         }
-        Ok(Found { answer, gaits })
+        Ok(SearchResult { document, gaits })
     }
 }
 
 /// Adds one of the six, and its line to the answer.
-fn tell(
+fn add(
     gait: &mut Document,
-    answer: &mut Document,
+    document: &mut Document,
     file: &SwimmerFile,
     (name, joined, backwards): (&'static str, &Joined, bool),
 ) {
@@ -151,7 +151,7 @@ fn tell(
         0 => format!("{} conditions hold", checks.len()),
         fails => format!("{fails} of {} conditions fail", checks.len()),
     };
-    answer.row(
+    document.row(
         name,
         format!(
             "({}, {}, {}) in {:.3} s; joining costs {:.2} %; {verdict}",

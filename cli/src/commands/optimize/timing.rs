@@ -61,10 +61,10 @@ impl ServoTiming {
 
 impl Timed {
     /// Adds the cost of the limit. ξ of the timed gait is reported by outputs with an efficiency.
-    pub(super) fn tell(&self, answer: &mut Document) {
+    pub(super) fn add(&self, document: &mut Document) {
         let timing = &self.timing;
         let rate = |value: f64| format!("{} a second", quantity::angle(value));
-        let told = object! {
+        let keys = object! {
             "period_s": timing.period,
             "period_min_s": timing.shortest_period,
             "max_rate_rad_s": timing.max_rate,
@@ -73,7 +73,7 @@ impl Timed {
             "efficiency_loss": timing.efficiency_loss,
             "speed_m_per_s": self.speed_m_per_s,
         };
-        answer
+        document
             .row(
                 "timed for",
                 format!(
@@ -99,7 +99,7 @@ impl Timed {
                 "speed",
                 format!("{} a second", quantity::length(self.speed_m_per_s)),
             );
-        answer.key("timing", told);
+        document.key("timing", keys);
     }
 }
 

@@ -2,8 +2,8 @@
 
 use gait_optimizer::{TurningError, TurningProblem, turning};
 
-use super::answer::{say_if_beyond, tell_arcs};
-use super::{Found, Objective, Task};
+use super::output::{add_arcs, say_if_beyond};
+use super::{Objective, SearchResult, Task};
 use crate::bounds::WholeBounds;
 use crate::document::Document;
 use crate::failure::{Failure, Outcome};
@@ -23,7 +23,7 @@ pub(crate) struct Turning {
 impl Objective for Turning {
     const WRITES: &'static str = "Write the gait, at constant power, as a gait file";
 
-    fn search(&self, task: &Task) -> Outcome<Found> {
+    fn search(&self, task: &Task) -> Outcome<SearchResult> {
         let swimmer = task.file.swimmer;
         let search = |bounds| Ok(turning(&TurningProblem { swimmer, bounds })?);
         let robot = (&task.file, self.bounds.playable());
@@ -38,11 +38,11 @@ impl Objective for Turning {
         })?;
         let gait = &found.gait;
         say_if_beyond(task, gait);
-        let mut answer = Document::new(format!(
+        let mut document = Document::new(format!(
             "{}, most rotation, {}",
             task.file.name, gait.bounds
         ));
-        answer
+        document
             .key("rotation_rad", gait.rotation)
             // Connected, of that sign.
             .key("regions", found.regions)
@@ -63,18 +63,18 @@ impl Objective for Turning {
                     gait.displacement_over_length, gait.lateral_over_length
                 ),
             );
-        tell_arcs(&mut answer, &gait.arcs);
+        add_arcs(&mut document, &gait.arcs);
         let regions = match found.regions {
             1 => "the one region of positive θ curvature".to_owned(),
             count => format!("each of the {count} regions of positive θ curvature"),
         };
-        answer.row(
+        document.row(
             "best of",
             format!(
                 "simple loops, round {regions}: no other simple loop within one region turns more"
             ),
         );
-        Ok(Found::gait(answer, task, gait, None))
+        Ok(SearchResult::gait(document, task, gait, None))
     }
 }
 

@@ -12,10 +12,10 @@ use link_protocol::{Flags, Joint, Telemetry};
 use swimmer_files::SwimmerFile;
 
 use super::bench::{Frames, watched};
-use super::find::{self, Answer};
+use super::find::{self, GreetingResult};
 use super::key::KeyFile;
 use super::port::{AnyPort, BAUD, Fresh, Means, NotOpen, Opened, Pace, fresh, open};
-use super::port_owner::{Ask, HeldBy, Holder, Relayed};
+use super::port_owner::{Ask, HeldBy, PortHolder, Relayed};
 use crate::arguments::load_swimmer;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
@@ -44,29 +44,29 @@ pub(crate) struct Access {
 }
 
 /// A greeted robot, with port name, log and requests of other processes.
-pub(super) struct Line {
+pub(super) struct RobotConnection {
     pub(super) robot: Robot<AnyPort>,
     /// The port's name.
     name: String,
-    holder: Holder,
+    holder: PortHolder,
     recorder: Option<Recorder>,
     /// The robot's clock at the telemetry seen last, µs.
     seen_us: Option<u64>,
 }
 
 /// Connection to the robot: its own line, or the process that holds the port.
-pub(super) enum Met {
-    /// Over its line, which is ours.
-    Line(Box<Line>),
-    /// Through the process that has it, which has done so.
+pub(super) enum Contact {
+    /// Over the robot's port, which this process holds.
+    Direct(Box<RobotConnection>),
+    /// Through the process that holds the port and has served the request.
     Relayed(Relayed),
 }
 
-/// A port that was named.
-pub(super) enum Reached {
-    /// It is ours.
+/// State of a named port.
+pub(super) enum PortState {
+    /// Free, and now opened by this process.
     Free(Opened),
-    /// Another `swimmer` has it.
+    /// Held by another `swimmer`.
     Held(HeldBy),
 }
 
@@ -152,22 +152,22 @@ impl Access {
     /// # Errors
     /// [`Failure::BadInput`] where no port was named and none or several can be meant, [`Failure::Tried`] when the port
     /// cannot be opened or no robot answers.
-    pub(super) fn connect(&self, command: &str, pace: Pace) -> Outcome<Line> {
+    pub(super) fn connect(&self, command: &str, pace: Pace) -> Outcome<RobotConnection> {
         let recorder = self.recorder()?;
         if let [name] = self.port.as_slice() {
             let means = self.means(pace)?;
-            let opened = reach_alone(name, &means)?;
+            let opened = open_when_free(name, &means)?;
             return self.greeted(opened, means.session, recorder, command);
         }
         let (name, robot) = self.find(pace)?;
-        let holder = Holder::announce(&name, command);
+        let holder = PortHolder::announce(&name, command);
         let mut robot = robot.map_port(|port| traced(port, recorder.as_ref(), &name));
         robot.call_back(callbacks(&holder));
         if recorder.is_some() {
             // The greeting belongs to the log: it determines the session that follows.
             robot.reconnect()?;
         }
-        let mut line = Line::new(name, robot, holder, recorder)?;
+        let mut line = RobotConnection::new(name, robot, holder, recorder)?;
         line.say_what_the_key_is_worth(self.key.is_named())?;
         Ok(line)
     }
@@ -179,12 +179,12 @@ impl Access {
         session: SessionConfig,
         recorder: Option<Recorder>,
         command: &str,
-    ) -> Outcome<Line> {
+    ) -> Outcome<RobotConnection> {
         let port = traced(opened.port, recorder.as_ref(), &opened.name);
-        let holder = Holder::announce(&opened.name, command);
+        let holder = PortHolder::announce(&opened.name, command);
         let callbacks = callbacks(&holder);
         let robot = Robot::connect_observed(port, session, callbacks)?;
-        let mut line = Line::new(opened.name, robot, holder, recorder)?;
+        let mut line = RobotConnection::new(opened.name, robot, holder, recorder)?;
         line.say_what_the_key_is_worth(self.key.is_named())?;
         Ok(line)
     }
@@ -199,7 +199,7 @@ impl Access {
         file: &SwimmerFile,
         seed: u64,
         frames: &Frames,
-    ) -> Outcome<Line> {
+    ) -> Outcome<RobotConnection> {
         let robot = match self.port.as_slice() {
             [name] => fresh(name).map(|robot| (name, robot)),
             _ => None,
@@ -234,14 +234,14 @@ impl Access {
     ///
     /// # Errors
     /// As [`Self::ask_holder`] and [`Self::connect`].
-    pub(super) fn meet(&self, ask: Ask, command: &str, pace: Pace) -> Outcome<Met> {
+    pub(super) fn contact(&self, ask: Ask, command: &str, pace: Pace) -> Outcome<Contact> {
         let begun = Instant::now();
         loop {
             if let Some(relayed) = self.ask_holder(ask)? {
-                return Ok(Met::Relayed(relayed));
+                return Ok(Contact::Relayed(relayed));
             }
             match self.connect(command, pace) {
-                Ok(line) => return Ok(Met::Line(Box::new(line))),
+                Ok(line) => return Ok(Contact::Direct(Box::new(line))),
                 // Another process took the port in between: the request can go to it.
                 Err(_) if self.held_by().is_some() && begun.elapsed() < 3 * A_MOMENT => {}
                 Err(failure) => return Err(failure),
@@ -253,9 +253,9 @@ impl Access {
     ///
     /// # Errors
     /// [`Failure::Tried`] when the port cannot be opened.
-    pub(super) fn reach_named(&self, pace: Pace) -> Outcome<Option<Reached>> {
+    pub(super) fn open_named(&self, pace: Pace) -> Outcome<Option<PortState>> {
         match self.port.as_slice() {
-            [name] => reach(name, &self.means(pace)?).map(Some),
+            [name] => try_open(name, &self.means(pace)?).map(Some),
             _ => Ok(None),
         }
     }
@@ -307,41 +307,41 @@ impl Access {
 ///
 /// # Errors
 /// [`Failure::Tried`] when it cannot be opened.
-fn reach(name: &str, means: &Means) -> Outcome<Reached> {
+fn try_open(name: &str, means: &Means) -> Outcome<PortState> {
     let begun = Instant::now();
     loop {
         if let Some(held_by) = HeldBy::of(name) {
-            return Ok(Reached::Held(held_by));
+            return Ok(PortState::Held(held_by));
         }
         match open(name, means) {
-            Ok(opened) => return Ok(Reached::Free(opened)),
+            Ok(opened) => return Ok(PortState::Free(opened)),
             Err(NotOpen::Busy(_)) if begun.elapsed() < A_MOMENT => sleep(LOOK_AGAIN),
             Err(NotOpen::Busy(failure) | NotOpen::Failed(failure)) => return Err(failure),
         }
     }
 }
 
-/// [`reach`], for what needs the port for itself: another `swimmer` may be about to end.
-pub(super) fn reach_alone(name: &str, means: &Means) -> Outcome<Opened> {
+/// [`try_open`], for what needs the port for itself: another `swimmer` may be about to end.
+pub(super) fn open_when_free(name: &str, means: &Means) -> Outcome<Opened> {
     let begun = Instant::now();
     loop {
-        match reach(name, means)? {
-            Reached::Free(opened) => return Ok(opened),
-            Reached::Held(_) if begun.elapsed() < A_MOMENT => sleep(LOOK_AGAIN),
-            Reached::Held(held_by) => return Err(Failure::Tried(held_by.to_string())),
+        match try_open(name, means)? {
+            PortState::Free(opened) => return Ok(opened),
+            PortState::Held(_) if begun.elapsed() < A_MOMENT => sleep(LOOK_AGAIN),
+            PortState::Held(held_by) => return Err(Failure::Tried(held_by.to_string())),
         }
     }
 }
 
 /// Greets whoever is behind a candidate.
-pub(super) fn greet(name: &str, means: &Means) -> Answer {
-    let greeted = reach_alone(name, means)
+pub(super) fn greet(name: &str, means: &Means) -> GreetingResult {
+    let greeted = open_when_free(name, means)
         .and_then(|opened| Ok(Robot::connect_with(opened.port, means.session)?));
     greeted.map_err(|failure| failure.to_string())
 }
 
 /// Reports of a silent link on standard error, and stops that other processes request while the robot is waited for.
-fn callbacks(holder: &Holder) -> Callbacks {
+fn callbacks(holder: &PortHolder) -> Callbacks {
     let halts = holder.halts();
     Callbacks {
         halt: Some(Box::new(move || halts.take())),
@@ -370,7 +370,7 @@ fn traced(port: AnyPort, recorder: Option<&Recorder>, name: &str) -> AnyPort {
     Box::new(TracedPort::new(port, recorder.sink(epoch)))
 }
 
-impl Line {
+impl RobotConnection {
     /// Returns `true` if the robot is a virtual one that ends with the command.
     pub(super) fn is_fresh(&self) -> bool {
         fresh(&self.name).is_some()
@@ -379,7 +379,7 @@ impl Line {
     fn new(
         name: String,
         robot: Robot<AnyPort>,
-        holder: Holder,
+        holder: PortHolder,
         recorder: Option<Recorder>,
     ) -> Outcome<Self> {
         let mut line = Self {
@@ -481,7 +481,7 @@ impl Line {
     }
 
     /// The robot and the queue of requests, for calls that cannot [`beat`](Self::beat).
-    pub(super) fn split(&mut self) -> (&mut Robot<AnyPort>, &mut Holder) {
+    pub(super) fn split(&mut self) -> (&mut Robot<AnyPort>, &mut PortHolder) {
         (&mut self.robot, &mut self.holder)
     }
 

@@ -14,9 +14,9 @@ use link_protocol::{StateName, StopCause, Telemetry};
 use pose_source::{Frame, Received, Recorder, Settings, SourceName, Stream, twin_frame};
 use swimmer_files::SwimmerFile;
 
-use super::access::{Access, Line};
-use super::answers::cause;
+use super::access::{Access, RobotConnection};
 use super::motion::MAY_JUMP;
+use super::outputs::cause;
 use super::port::{AnyPort, Pace};
 use super::preflight::Player;
 use super::rest::nothing_under_way;
@@ -89,7 +89,7 @@ struct Play {
 
 /// Robot and cameras. All times are on the clock of the port.
 pub(crate) struct Bench {
-    line: Line,
+    line: RobotConnection,
     cameras: Cameras,
     interrupt: Interrupt,
     play: Option<Play>,

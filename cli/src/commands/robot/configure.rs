@@ -63,7 +63,7 @@ pub(super) fn configure(access: &Access, arguments: &Configure, output: Output) 
     robot
         .configure(wanted)
         .map_err(|error| refused(error, &wanted, &limits))?;
-    output.answer(&Configured {
+    output.print(&Configured {
         swimmer: file.name,
         max_angle_rad: wanted.max_angle,
         max_rate_rad_s: wanted.max_rate,

@@ -16,14 +16,17 @@ const BRIEFLY: Duration = Duration::from_secs(4);
 /// Time where there is one port only: its own error is worth waiting for.
 const PATIENTLY: Duration = Duration::from_secs(20);
 
-/// A greeted robot, or the reason why there is none.
-pub(super) type Answer<T = Robot<AnyPort>> = Result<T, String>;
+/// A greeted robot, or the reason why the greeting failed.
+pub(super) type GreetingResult<T = Robot<AnyPort>> = Result<T, String>;
 
 /// Greets every port. Nobody is moved by a greeting; a device that is no robot sees a few bytes.
-pub(super) fn greet_all(ports: Vec<ListedPort>, means: &Means) -> Vec<(ListedPort, Answer)> {
+pub(super) fn greet_all(
+    ports: Vec<ListedPort>,
+    means: &Means,
+) -> Vec<(ListedPort, GreetingResult)> {
     let patience = if ports.len() == 1 { PATIENTLY } else { BRIEFLY };
     let until = Instant::now() + patience;
-    let (sender, answers) = mpsc::channel();
+    let (sender, results) = mpsc::channel();
     for (index, port) in ports.iter().enumerate() {
         let (sender, path, means) = (sender.clone(), port.path.clone(), means.clone());
         // A port that never opens keeps its thread; the command does not wait for it.
@@ -33,19 +36,19 @@ pub(super) fn greet_all(ports: Vec<ListedPort>, means: &Means) -> Vec<(ListedPor
         });
     }
     drop(sender);
-    let mut greeted: Vec<Option<Answer>> = ports.iter().map(|_| None).collect();
-    while let Ok((index, answer)) =
-        answers.recv_timeout(until.saturating_duration_since(Instant::now()))
+    let mut greeted: Vec<Option<GreetingResult>> = ports.iter().map(|_| None).collect();
+    while let Ok((index, result)) =
+        results.recv_timeout(until.saturating_duration_since(Instant::now()))
     {
         if let Some(place) = greeted.get_mut(index) {
-            *place = Some(answer);
+            *place = Some(result);
         }
     }
     let silent = || Err(format!("no answer within {} s", patience.as_secs()));
     ports
         .into_iter()
         .zip(greeted)
-        .map(|(port, answer)| (port, answer.unwrap_or_else(silent)))
+        .map(|(port, result)| (port, result.unwrap_or_else(silent)))
         .collect()
 }
 
@@ -54,10 +57,10 @@ pub(super) fn greet_all(ports: Vec<ListedPort>, means: &Means) -> Vec<(ListedPor
 /// # Errors
 /// [`Failure::BadInput`] where there is no port at all or several robots answer, so that one must be named;
 /// [`Failure::Tried`] where there are ports and no robot.
-pub(super) fn choose<T>(answers: Vec<(ListedPort, Answer<T>)>) -> Outcome<(ListedPort, T)> {
+pub(super) fn choose<T>(results: Vec<(ListedPort, GreetingResult<T>)>) -> Outcome<(ListedPort, T)> {
     let (mut robots, mut reasons) = (Vec::new(), Vec::new());
-    for (port, answer) in answers {
-        match answer {
+    for (port, result) in results {
+        match result {
             Ok(robot) => robots.push((port, robot)),
             Err(reason) => reasons.push(format!("\n  {port}: {reason}")),
         }
@@ -100,18 +103,18 @@ mod tests {
 
     #[test]
     fn the_only_robot_is_taken() {
-        let answers = vec![
+        let results = vec![
             (port("/dev/rfcomm0"), Err("no answer".to_owned())),
             (port("/dev/rfcomm1"), Ok(7)),
         ];
-        let (found, robot) = choose(answers).unwrap();
+        let (found, robot) = choose(results).unwrap();
         assert_eq!((found.path.as_str(), robot), ("/dev/rfcomm1", 7));
     }
 
     #[test]
     fn of_two_robots_one_must_be_named() {
-        let answers = vec![(port("/dev/rfcomm0"), Ok(1)), (port("/dev/rfcomm1"), Ok(2))];
-        insta::assert_snapshot!(choose(answers).unwrap_err(), @"
+        let results = vec![(port("/dev/rfcomm0"), Ok(1)), (port("/dev/rfcomm1"), Ok(2))];
+        insta::assert_snapshot!(choose(results).unwrap_err(), @"
 2 robots answer; say which with --port:
   /dev/rfcomm0 (Bluetooth)
   /dev/rfcomm1 (Bluetooth)
@@ -120,11 +123,11 @@ mod tests {
 
     #[test]
     fn where_nobody_answers_each_port_says_why() {
-        let answers: Vec<(_, Answer<()>)> = vec![
+        let results: Vec<(_, GreetingResult<()>)> = vec![
             (port("/dev/rfcomm0"), Err("no answer within 4 s".to_owned())),
             (port("/dev/ttyUSB0"), Err("permission denied".to_owned())),
         ];
-        let failure = choose(answers).unwrap_err();
+        let failure = choose(results).unwrap_err();
         assert!(matches!(failure, Failure::Tried(_)));
         insta::assert_snapshot!(failure, @"
 no robot answers at any port; is it switched on and paired? Tried:

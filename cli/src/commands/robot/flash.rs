@@ -12,8 +12,8 @@ use link_protocol::{Board, StateName};
 use serde::Serialize;
 
 use super::access::Access;
-use super::answers::state;
 use super::info::board;
+use super::outputs::state;
 use super::port::Pace;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
@@ -103,7 +103,7 @@ pub(super) fn run(access: &Access, arguments: &Flash, output: Output) -> Outcome
             drive.display()
         ))
     })?;
-    output.answer(&Flashed {
+    output.print(&Flashed {
         file: checked.file.display().to_string(),
         board: checked.board().map(board),
         version: checked.info.version,

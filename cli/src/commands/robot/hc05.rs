@@ -7,7 +7,7 @@ use host_link::port::SerialPort;
 use serde::Serialize;
 
 use super::access::Access;
-use super::answers::answer_no;
+use super::outputs::print_refusal;
 use super::port::is_a_path;
 use crate::failure::{Failure, Outcome};
 use crate::output::Output;
@@ -55,9 +55,9 @@ pub(super) fn run(access: &Access, arguments: &Hc05, output: Output) -> Outcome 
             "the HC-05 is not as wanted: {}; set it up with the same command without --check",
             answer.differed.join(", ")
         );
-        return answer_no(output, &answer, reason);
+        return print_refusal(output, &answer, reason);
     }
-    output.answer(&answer);
+    output.print(&answer);
     Ok(())
 }
 

@@ -5,7 +5,7 @@ use link_protocol::{
 };
 
 use super::access::Access;
-use super::answers::{Gait, gait_line};
+use super::outputs::{Gait, gait_line};
 use super::port::Pace;
 use crate::document::{Document, object};
 use crate::failure::Outcome;
@@ -23,7 +23,7 @@ pub(super) fn run(access: &Access, output: Output) -> Outcome {
     } else {
         None
     };
-    output.answer(&answer(
+    output.print(&answer(
         robot.info(),
         crash_message,
         &configuration,
@@ -109,16 +109,16 @@ fn answer(
                 "knots": limits.max_knots,
             },
         );
-    tell_body(&mut answer, body);
+    add_body(&mut answer, body);
     answer
         .row("gait", gait_line(gait.as_ref()))
         .key("gait", gait);
-    tell_traffic(&mut answer, counters);
+    add_traffic(&mut answer, counters);
     answer
 }
 
 /// Adds the lengths and the drag that the robot counts with.
-fn tell_body(answer: &mut Document, body: &Configuration) {
+fn add_body(answer: &mut Document, body: &Configuration) {
     let c_t = match body.tangential_drag {
         TangentialDrag::LogAspect(value) => format!("2πμ / {value}"),
         TangentialDrag::HalfThickness(value) => format!("per link, half thickness {value} m"),
@@ -156,7 +156,7 @@ fn tell_body(answer: &mut Document, body: &Configuration) {
 }
 
 /// Adds what came over the link.
-fn tell_traffic(answer: &mut Document, counters: &Counters) {
+fn add_traffic(answer: &mut Document, counters: &Counters) {
     let (good, bad) = (counters.frames.ok, counters.frames.bad());
     answer.row("frames", format!("{good} good, {bad} bad")).key(
         "counters",

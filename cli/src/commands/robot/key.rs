@@ -140,7 +140,7 @@ pub(super) fn run(access: &Access, change: &KeyChange, output: Output) -> Outcom
             }
         }
     };
-    output.answer(&answer);
+    output.print(&answer);
     line.close()
 }
 

@@ -8,7 +8,7 @@ use swimmer_files::read_link_log;
 use twin::{Difference, Reason, ReplayError, Replayed, Verdict, replay};
 
 use super::access::Access;
-use super::answers::{answer_no, state, telemetry_angles};
+use super::outputs::{print_refusal, state, telemetry_angles};
 use super::port::Pace;
 use super::upload::table_of;
 use super::watch::listen;
@@ -39,7 +39,7 @@ pub(super) fn log(access: &Access, arguments: &Log, output: Output) -> Outcome {
     let end = arguments.seconds.map(Duration::from_secs_f64);
     listen(&mut line, end, &interrupt, |_| {})?;
     let frames = line.close_log()?;
-    output.answer(&Logged {
+    output.print(&Logged {
         file: arguments.file.display().to_string(),
         frames: frames.unwrap_or_default(),
     });
@@ -62,26 +62,26 @@ struct Comparison {
     seconds: f64,
     /// The robot restarted later in the log; what follows is not compared.
     restarted: bool,
-    first_difference: Option<Told>,
+    first_difference: Option<FirstDifference>,
 }
 
 /// Robot and brain at the first difference.
 #[derive(Debug, Serialize)]
-struct Told {
+struct FirstDifference {
     robot_time_s: f64,
-    logged: Doing,
-    replayed: Option<Doing>,
+    logged: LoggedState,
+    replayed: Option<LoggedState>,
 }
 
 #[derive(Debug, Serialize)]
-struct Doing {
+struct LoggedState {
     state: &'static str,
     cycle: f64,
     setpoint_rad: [f64; 2],
     pulse_ns: [u32; 2],
 }
 
-impl Doing {
+impl LoggedState {
     fn new(telemetry: &link_protocol::Telemetry) -> Self {
         Self {
             state: state(telemetry.state),
@@ -92,7 +92,7 @@ impl Doing {
     }
 }
 
-impl fmt::Display for Doing {
+impl fmt::Display for LoggedState {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [front, back] = self.setpoint_rad;
         write!(
@@ -123,10 +123,12 @@ impl Comparison {
             requests: replayed.requests,
             seconds: replayed.seconds,
             restarted: replayed.restarted,
-            first_difference: replayed.first.map(|Difference { logged, replayed }| Told {
-                robot_time_s: Duration::from_micros(logged.robot_us).as_secs_f64(),
-                logged: Doing::new(&logged),
-                replayed: replayed.as_ref().map(Doing::new),
+            first_difference: replayed.first.map(|Difference { logged, replayed }| {
+                FirstDifference {
+                    robot_time_s: Duration::from_micros(logged.robot_us).as_secs_f64(),
+                    logged: LoggedState::new(&logged),
+                    replayed: replayed.as_ref().map(LoggedState::new),
+                }
             }),
         }
     }
@@ -228,14 +230,14 @@ pub(super) fn replay_log(arguments: &Replay, output: Output) -> Outcome {
         ));
     }
     if answer.same {
-        output.answer(&answer);
+        output.print(&answer);
         return Ok(());
     }
     let reason = answer.undecided.as_ref().map_or_else(
         || "the log and the brain differ".to_owned(),
         |reason| format!("undecided: {reason}"),
     );
-    answer_no(output, &answer, reason)
+    print_refusal(output, &answer, reason)
 }
 
 impl From<ReplayError> for Failure {

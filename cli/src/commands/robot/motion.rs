@@ -10,8 +10,8 @@ use host_link::robot::await_play::{at_rest, finished};
 use link_protocol::{Refusal, Status};
 use serde::Serialize;
 
-use super::access::{Access, Line, Met};
-use super::answers::{Done, PAUSED_DETACHED, cause, state};
+use super::access::{Access, Contact, RobotConnection};
+use super::outputs::{Done, PAUSED_DETACHED, cause, state};
 use super::playing::{self, Playing};
 use super::playlist;
 use super::port::Pace;
@@ -84,7 +84,7 @@ pub(super) fn arm(access: &Access, arm: &Arm, output: Output) -> Outcome {
     line.robot.arm(arm.clear_estop)?;
     output.line("Armed: the servos hold their pose. Ctrl-C stops.");
     hold(&mut line, &interrupt)?;
-    output.answer(&Done::stopped());
+    output.print(&Done::stopped());
     line.close()
 }
 
@@ -149,7 +149,7 @@ pub(super) fn play(access: &Access, play: &Play, output: Output) -> Outcome {
         .map_err(|failure| if has_no_gait { no_gait() } else { failure })?;
     if play.detach {
         let status = robot.status()?;
-        output.answer(&Played::new(&status, true));
+        output.print(&Played::new(&status, true));
         return line.close();
     }
     output.line(&match play.cycles {
@@ -190,7 +190,7 @@ fn alone_for_long(play: &Play) -> Outcome {
 }
 
 /// Waits for the end of a play that began detached.
-fn attach(line: &mut Line, interrupt: &Interrupt, output: Output) -> Outcome {
+fn attach(line: &mut RobotConnection, interrupt: &Interrupt, output: Output) -> Outcome {
     let status = line.robot.status()?;
     if at_rest(status.state, status.cause) {
         if status.cycles == 0 && status.period_us == 0 {
@@ -199,7 +199,7 @@ fn attach(line: &mut Line, interrupt: &Interrupt, output: Output) -> Outcome {
             ));
         }
         // It has ended before we came; how it ended is the answer all the same.
-        output.answer(&Played::new(&ready(line, finished(status)?), false));
+        output.print(&Played::new(&ready(line, finished(status)?), false));
         return Ok(());
     }
     output.line(&format!(
@@ -218,17 +218,17 @@ pub(super) fn pause(access: &Access, pause: &Pause, output: Output) -> Outcome {
     } else {
         Ask::Pause
     };
-    let mut line = match access.meet(ask, "swimmer robot pause", Pace::RealTime)? {
-        Met::Line(line) => line,
-        Met::Relayed(relayed) => {
-            output.answer(&relayed.told());
+    let mut line = match access.contact(ask, "swimmer robot pause", Pace::RealTime)? {
+        Contact::Direct(line) => line,
+        Contact::Relayed(relayed) => {
+            output.print(&relayed.into_output());
             return Ok(());
         }
     };
     line.stops_on(&interrupt);
     line.robot.pause(pause.detach)?;
     if pause.detach {
-        output.answer(&Done {
+        output.print(&Done {
             state: "paused",
             sentence: PAUSED_DETACHED.into(),
         });
@@ -236,17 +236,17 @@ pub(super) fn pause(access: &Access, pause: &Pause, output: Output) -> Outcome {
     }
     output.line("Paused: the robot holds its pose. Ctrl-C stops.");
     hold(&mut line, &interrupt)?;
-    output.answer(&Done::stopped());
+    output.print(&Done::stopped());
     line.close()
 }
 
 /// `swimmer robot resume`: continues the play and waits for the end of the last cycle.
 pub(super) fn resume(access: &Access, output: Output) -> Outcome {
     let interrupt = Interrupt::install_with_a_robot()?;
-    let mut line = match access.meet(Ask::Resume, "swimmer robot resume", Pace::RealTime)? {
-        Met::Line(line) => line,
-        Met::Relayed(relayed) => {
-            output.answer(&relayed.told());
+    let mut line = match access.contact(Ask::Resume, "swimmer robot resume", Pace::RealTime)? {
+        Contact::Direct(line) => line,
+        Contact::Relayed(relayed) => {
+            output.print(&relayed.into_output());
             return Ok(());
         }
     };
@@ -257,7 +257,7 @@ pub(super) fn resume(access: &Access, output: Output) -> Outcome {
 }
 
 /// Keeps the link until Ctrl-C, then stops the robot.
-fn hold(line: &mut Line, interrupt: &Interrupt) -> Outcome {
+fn hold(line: &mut RobotConnection, interrupt: &Interrupt) -> Outcome {
     loop {
         let news = line.beat();
         let news = stopped_on_failure(&mut line.robot, news)?;
@@ -280,14 +280,14 @@ fn hold(line: &mut Line, interrupt: &Interrupt) -> Outcome {
 }
 
 /// Waits for the end of the last cycle, with progress; Ctrl-C stops the robot. Other processes are served meanwhile.
-fn wait(line: &mut Line, interrupt: &Interrupt, output: Output) -> Outcome {
+fn wait(line: &mut RobotConnection, interrupt: &Interrupt, output: Output) -> Outcome {
     let status = line.robot.status()?;
-    let mut shown = playing::Shown::new(Playing::of(&status));
+    let mut shown = playing::PlayProgress::new(Playing::of(&status));
     let (robot, holder) = line.split();
     let status = loop {
         let waited = robot.wait_while(|telemetry| {
             if let Some(telemetry) = telemetry {
-                shown.tell(telemetry);
+                shown.update(telemetry);
             }
             if interrupt.requested() || holder.asked() {
                 ControlFlow::Break(())
@@ -304,7 +304,7 @@ fn wait(line: &mut Line, interrupt: &Interrupt, output: Output) -> Outcome {
                 let status = robot.status()?;
                 if status.cycles == 0 && interrupt.pressed() == CTRL_C {
                     // Without end this is how it ends, and the robot has confirmed it.
-                    output.answer(&Played::new(&status, false));
+                    output.print(&Played::new(&status, false));
                     return Ok(());
                 }
                 return Err(Failure::Tried(format!(
@@ -317,6 +317,6 @@ fn wait(line: &mut Line, interrupt: &Interrupt, output: Output) -> Outcome {
         }
     };
     drop(shown);
-    output.answer(&Played::new(&ready(line, status), false));
+    output.print(&Played::new(&ready(line, status), false));
     Ok(())
 }

@@ -4,7 +4,7 @@ use std::fmt;
 
 use link_protocol::{StateName, Status, Telemetry};
 
-use super::answers::state;
+use super::outputs::state;
 use crate::progress::Progress;
 
 /// A play, according to the robot.
@@ -77,12 +77,12 @@ impl fmt::Display for Playing {
 }
 
 /// The play on a progress line.
-pub(super) struct Shown {
+pub(super) struct PlayProgress {
     play: Playing,
     progress: Progress,
 }
 
-impl Shown {
+impl PlayProgress {
     pub(super) fn new(play: Playing) -> Self {
         Self {
             play,
@@ -91,7 +91,7 @@ impl Shown {
     }
 
     /// Takes new telemetry.
-    pub(super) fn tell(&mut self, telemetry: &Telemetry) {
+    pub(super) fn update(&mut self, telemetry: &Telemetry) {
         self.play = self.play.at(telemetry);
         if let Some(share) = self.play.share() {
             self.progress.at_share(share);

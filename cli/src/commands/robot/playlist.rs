@@ -15,11 +15,11 @@ use swimmer_files::{Playlist, SwimmerFile};
 use swimmer_model::{Model, Pose};
 
 use super::Play;
-use super::access::{Access, Line};
-use super::answers::{cause, state};
+use super::access::{Access, RobotConnection};
+use super::outputs::{cause, state};
 use super::playing::duration;
 use super::port::Pace;
-use super::preflight::{Player, Room};
+use super::preflight::{Player, TankOptions};
 use super::rest::{nothing_under_way, ready, stopped_on_failure, wait_for_rest};
 use super::upload::{MadeFor, send_table};
 use crate::arguments::load_swimmer;
@@ -31,7 +31,7 @@ use crate::quantity;
 
 /// Result of a playlist.
 #[derive(Debug, Serialize)]
-struct PlayedAnswer {
+struct PlayedOutput {
     state: &'static str,
     cause: &'static str,
     /// Steps of the playlist, all played.
@@ -50,7 +50,7 @@ struct Foretold {
     rotation_rad: f64,
 }
 
-impl fmt::Display for PlayedAnswer {
+impl fmt::Display for PlayedOutput {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
@@ -117,7 +117,7 @@ pub(super) fn play(
     }
     let status = through(&mut line, &tables, settings_crc32, interrupt)?;
     let status = ready(&mut line, status);
-    output.answer(&PlayedAnswer {
+    output.print(&PlayedOutput {
         state: state(status.state),
         cause: cause(status.cause),
         steps: playlist.steps.len(),
@@ -164,7 +164,7 @@ fn made_for_it(
 }
 
 /// Checks of limits, rates and walls, and the final pose.
-fn preflight(tables: &[PlaylistTable], player: &Player, room: &Room) -> Outcome<Foretold> {
+fn preflight(tables: &[PlaylistTable], player: &Player, room: &TankOptions) -> Outcome<Foretold> {
     let swimmer = &player.swimmer;
     let model = Model::new(swimmer).map_err(|error| {
         Failure::BadInput(format!(
@@ -212,7 +212,7 @@ const SLOWER: f64 = 1.25;
 
 /// Refuses a playlist of which a table would arrive after the end of the one before. The expectation of a link without faults
 /// comes first; once a table was sent, its upload shows what this link carries.
-fn in_time(tables: &[PlaylistTable], line: &Line, measured: Option<Sending>) -> Outcome {
+fn in_time(tables: &[PlaylistTable], line: &RobotConnection, measured: Option<Sending>) -> Outcome {
     for pair in tables.windows(2) {
         let bytes = pair[1].table.bytes().len();
         let expected = line.robot.expected_upload_while_playing(bytes);
@@ -236,7 +236,7 @@ fn in_time(tables: &[PlaylistTable], line: &Line, measured: Option<Sending>) -> 
 
 /// From the first pulse to the end of the last cycle; Ctrl-C and failures stop the robot.
 fn through(
-    line: &mut Line,
+    line: &mut RobotConnection,
     tables: &[PlaylistTable],
     settings_crc32: u32,
     interrupt: &Interrupt,

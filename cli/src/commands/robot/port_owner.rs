@@ -34,8 +34,8 @@ mod unsupported;
 #[cfg(unix)]
 pub(super) use self::held_by::HeldBy;
 #[cfg(unix)]
-pub(super) use self::holder::Holder;
+pub(super) use self::holder::PortHolder;
 pub(super) use open_by::program_with;
 pub(super) use relay::{Ask, Introduction, News, Relayed, Unanswered};
 #[cfg(not(unix))]
-pub(super) use unsupported::{HeldBy, Holder};
+pub(super) use unsupported::{HeldBy, PortHolder};

@@ -31,18 +31,18 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FIT.json")]
     fit: Option<PathBuf>,
     #[command(flatten)]
-    room: Room,
+    room: TankOptions,
 }
 
 /// The tank, and the start pose in it.
 #[derive(Debug, clap::Args)]
-pub(super) struct Room {
+pub(super) struct TankOptions {
     /// Foretell when the swimmer meets a wall of this tank: length x width, m
     #[arg(long, value_name = "LENGTHxWIDTH", value_parser = tank)]
     pub(super) tank: Option<Tank>,
     /// Where in the tank it starts: from its centre along length and width, m
-    #[arg(long, value_name = "X,Y", value_parser = place, requires = "tank", allow_hyphen_values = true, default_value = "0,0")]
-    start: Place,
+    #[arg(long, value_name = "X,Y", value_parser = tank_position, requires = "tank", allow_hyphen_values = true, default_value = "0,0")]
+    start: TankPosition,
     /// Where the middle link heads at the start, from the tank's length
     #[arg(long, value_name = "ANGLE", value_parser = angle, requires = "tank", allow_hyphen_values = true, default_value = "0deg")]
     heading: f64,
@@ -50,7 +50,7 @@ pub(super) struct Room {
 
 /// A position in the tank, from its centre \[m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Place(Vector2<f64>);
+struct TankPosition(Vector2<f64>);
 
 /// The swimmer that plays the gait, and its servos.
 pub(super) struct Player {
@@ -78,7 +78,7 @@ impl Player {
         configuration: &Configuration,
         file: Option<&SwimmerFile>,
     ) -> Self {
-        let told = file.and_then(|file| file.servo);
+        let servo_file = file.and_then(|file| file.servo);
         let (name, swimmer) = match file {
             Some(file) => (file.name.clone(), file.swimmer),
             None => configured(configuration),
@@ -86,8 +86,8 @@ impl Player {
         Self {
             name,
             swimmer,
-            servos: Servos::on_robot(told.unwrap_or_default(), hello, configuration),
-            assumed: told.is_none(),
+            servos: Servos::on_robot(servo_file.unwrap_or_default(), hello, configuration),
+            assumed: servo_file.is_none(),
         }
     }
 }
@@ -151,7 +151,7 @@ pub(super) struct Preflight {
     displacement_error_m: Option<f64>,
     /// Level of that interval.
     level: Option<f64>,
-    tank: Option<TankAnswer>,
+    tank: Option<TankOutput>,
     #[serde(flatten)]
     played: PlayedCycle,
     /// Reason to refuse a gait that the robot would play.
@@ -160,7 +160,7 @@ pub(super) struct Preflight {
 }
 
 #[derive(Debug, Serialize)]
-struct TankAnswer {
+struct TankOutput {
     length_m: f64,
     width_m: f64,
     /// Cycles until a wall is met; `null` if none is.
@@ -170,7 +170,7 @@ struct TankAnswer {
     at_m: Option<[f64; 2]>,
 }
 
-impl Room {
+impl TankOptions {
     /// Checks the options before any robot is contacted.
     ///
     /// # Errors
@@ -179,7 +179,7 @@ impl Room {
         let Some(tank) = &self.tank else {
             return Ok(());
         };
-        let Place(start) = self.start;
+        let TankPosition(start) = self.start;
         let (along, across) = (tank.length / 2.0, tank.width / 2.0);
         if start.x.abs() < along && start.y.abs() < across {
             return Ok(());
@@ -193,7 +193,7 @@ impl Room {
 
     /// The start pose.
     pub(super) fn start(&self) -> Pose<f64> {
-        let Place(start) = self.start;
+        let TankPosition(start) = self.start;
         Pose::new(start.x, start.y, self.heading)
     }
 }
@@ -228,7 +228,7 @@ impl Arguments {
             period: self.period,
             knots: MAX_KNOTS,
         };
-        let told = forecast(&model, gait, &played).map_err(|error| Failure::tried(&error))?;
+        let servo_file = forecast(&model, gait, &played).map_err(|error| Failure::tried(&error))?;
         let fit = self.fit.as_deref().map(load_fit).transpose()?;
         let error = fit
             .as_ref()
@@ -239,14 +239,14 @@ impl Arguments {
                     ..player.swimmer
                 };
                 let intervals = (fit.sphere_radius_interval, fit.chi_interval);
-                told.displacement_error(&fitted, intervals.0, intervals.1, fit.correlation)
+                servo_file.displacement_error(&fitted, intervals.0, intervals.1, fit.correlation)
             })
             .transpose()
             .map_err(|error| Failure::bad_input(&error))?;
-        let meeting = |tank: &Tank| until_wall(&model, &told.way, tank, &self.room.start());
+        let meeting = |tank: &Tank| until_wall(&model, &servo_file.way, tank, &self.room.start());
         let tank = self.room.tank.as_ref();
-        let tank = tank.map(|tank| TankAnswer::new(tank, meeting(tank), self.period));
-        let mut preflight = Preflight::new(name, player, &told);
+        let tank = tank.map(|tank| TankOutput::new(tank, meeting(tank), self.period));
+        let mut preflight = Preflight::new(name, player, &servo_file);
         if let Some(tank) = tank.as_ref().filter(|tank| tank.is_too_small()) {
             preflight.refuse(format!("the tank of {tank}"));
         }
@@ -260,14 +260,14 @@ impl Arguments {
 }
 
 impl Preflight {
-    fn new(name: &str, player: &Player, told: &Forecast) -> Self {
-        let servos = &told.played.servos;
+    fn new(name: &str, player: &Player, servo_file: &Forecast) -> Self {
+        let servos = &servo_file.played.servos;
         let allowed = servos.file.max_rate;
         Self {
             gait: name.to_owned(),
             swimmer: player.name.clone(),
             // In the shortest period the fastest joint just reaches the allowed rate.
-            max_rate_rad_s: allowed * told.verdict.min_period / told.played.period,
+            max_rate_rad_s: allowed * servo_file.verdict.min_period / servo_file.played.period,
             max_rate_allowed_rad_s: allowed,
             table_step_rad: double(ANGLE_UNIT_RAD),
             pulse_step_rad: f64::from(servos.pulse_step_ns) * 1e-3 * servos.file.slope_rad_per_us,
@@ -276,12 +276,12 @@ impl Preflight {
             displacement_error_m: None,
             level: None,
             tank: None,
-            played: PlayedCycle::new(told),
-            unseen_by_robot: told
+            played: PlayedCycle::new(servo_file),
+            unseen_by_robot: servo_file
                 .verdict
                 .refused
                 .is_none()
-                .then(|| told.too_close())
+                .then(|| servo_file.too_close())
                 .flatten(),
         }
     }
@@ -355,7 +355,7 @@ impl fmt::Display for Preflight {
     }
 }
 
-impl TankAnswer {
+impl TankOutput {
     fn new(tank: &Tank, meeting: Option<Meeting>, period: f64) -> Self {
         Self {
             length_m: tank.length,
@@ -368,14 +368,14 @@ impl TankAnswer {
     }
 }
 
-impl TankAnswer {
+impl TankOutput {
     /// Returns true if a wall is met before the first cycle.
     fn is_too_small(&self) -> bool {
         self.cycles.is_some_and(|cycles| cycles <= 0.0)
     }
 }
 
-impl fmt::Display for TankAnswer {
+impl fmt::Display for TankOutput {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} m by {} m: ", self.length_m, self.width_m)?;
         match (self.cycles, self.seconds, self.meets, self.at_m) {
@@ -409,12 +409,14 @@ pub(crate) fn tank(text: &str) -> Result<Tank, String> {
     }
 }
 
-fn place(text: &str) -> Result<Place, String> {
+fn tank_position(text: &str) -> Result<TankPosition, String> {
     let numbers = text
         .split_once(',')
         .map(|(x, y)| (f64::from_str(x.trim()), f64::from_str(y.trim())));
     match numbers {
-        Some((Ok(x), Ok(y))) if x.is_finite() && y.is_finite() => Ok(Place(Vector2::new(x, y))),
+        Some((Ok(x), Ok(y))) if x.is_finite() && y.is_finite() => {
+            Ok(TankPosition(Vector2::new(x, y)))
+        }
         _ => Err("write two lengths in metres from the tank's centre, as 0.1,-0.2".to_owned()),
     }
 }
@@ -432,9 +434,12 @@ mod tests {
         for text in ["1.0", "x", "0x1", "1x-1", "1xnan", "axb", "1x2x3"] {
             assert!(tank(text).is_err(), "{text}");
         }
-        assert_eq!(place("0.1,-0.2"), Ok(Place(Vector2::new(0.1, -0.2))));
+        assert_eq!(
+            tank_position("0.1,-0.2"),
+            Ok(TankPosition(Vector2::new(0.1, -0.2)))
+        );
         for text in ["", "1", "1,", "nan,0", "1,2,3"] {
-            assert!(place(text).is_err(), "{text}");
+            assert!(tank_position(text).is_err(), "{text}");
         }
     }
 
@@ -442,9 +447,12 @@ mod tests {
     #[test]
     fn a_configured_robot_is_its_preset_or_its_own_numbers() {
         let robot = SwimmerFile::preset("robot").unwrap();
-        let told = twin::configuration(&robot.swimmer, &ServoFile::default()).unwrap();
-        assert_eq!(configured(&told), (robot.name, robot.swimmer));
-        let other = Configuration { chi: 3.21, ..told };
+        let servo_file = twin::configuration(&robot.swimmer, &ServoFile::default()).unwrap();
+        assert_eq!(configured(&servo_file), (robot.name, robot.swimmer));
+        let other = Configuration {
+            chi: 3.21,
+            ..servo_file
+        };
         let (name, swimmer) = configured(&other);
         assert_eq!(name, "as configured on the robot");
         assert_eq!((swimmer.chi, swimmer.links.front), (3.21, 0.137));

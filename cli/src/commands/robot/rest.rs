@@ -6,8 +6,8 @@ use std::time::Duration;
 use host_link::{LinkError, Robot};
 use link_protocol::{StateName, Status};
 
-use super::access::{BEAT, Line};
-use super::answers::{is_under_way, state};
+use super::access::{BEAT, RobotConnection};
+use super::outputs::{is_under_way, state};
 use super::playing::Playing;
 use super::port::AnyPort;
 use crate::failure::{Failure, Outcome};
@@ -34,7 +34,7 @@ pub(super) fn nothing_under_way(status: &Status) -> Outcome {
 }
 
 /// The same play after the robot has ramped to neutral and accepts further requests; unchanged if the link is lost before.
-pub(super) fn ready(line: &mut Line, over: Status) -> Status {
+pub(super) fn ready(line: &mut RobotConnection, over: Status) -> Status {
     let mut waited = Duration::ZERO;
     let mut now = over;
     while !is_off(now.state) && waited < TO_REST {

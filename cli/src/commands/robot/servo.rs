@@ -224,7 +224,7 @@ pub(super) fn run(access: &Access, arguments: &Servo, output: Output) -> Outcome
         line.stored("the servo's map is")?;
     }
     let set = Set::read(&mut line.robot, joint)?;
-    output.answer(&set);
+    output.print(&set);
     line.close()
 }
 

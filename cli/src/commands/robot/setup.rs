@@ -4,10 +4,10 @@
 //! The joints are moved by trims, which the robot ramps like anything else, so that nothing but the last, optional, swing
 //! needs a gait. Leaving before the end stops the robot and restores its settings.
 
-mod answer;
 mod export;
 mod measured;
 mod operator;
+mod output;
 mod readings;
 mod save;
 mod swing;
@@ -21,13 +21,13 @@ use host_link::LinkError;
 use link_protocol::{Joint, ServoSettings, StateName};
 use swimmer_files::SwimmerFile;
 
-use self::answer::Done;
 use self::measured::{Measured, end_stops, told};
 use self::operator::{Operator, degrees, takes_it};
+use self::output::Done;
 use self::readings::Readings;
-use super::access::{Access, Line};
-use super::answers::state;
+use super::access::{Access, RobotConnection};
 use super::motion::MAY_JUMP;
+use super::outputs::state;
 use super::port::Pace;
 use super::rest::wait_for_rest;
 use super::servo::name_of;
@@ -92,13 +92,13 @@ pub(super) fn run(access: &Access, arguments: &Setup, output: Output) -> Outcome
             return Err(failure);
         }
     };
-    output.answer(&done);
+    output.print(&done);
     line.close()
 }
 
 /// Robot and operator during a set-up.
 struct Bench<'a> {
-    line: &'a mut Line,
+    line: &'a mut RobotConnection,
     operator: &'a Operator,
     interrupt: &'a Interrupt,
     /// Servo maps before the set-up; restored if it is left early.
@@ -227,7 +227,7 @@ impl Bench<'_> {
                 high: read(3, SWING)?,
                 after_high: read(4, 0.0)?,
             };
-            match readings.found(SWING) {
+            match readings.evaluate(SWING) {
                 Ok(found) => break found,
                 Err(problem) => self
                     .operator

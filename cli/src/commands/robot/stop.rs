@@ -9,8 +9,8 @@ use host_link::robot::{Halt, StoppedBy};
 use host_link::{LinkError, Robot};
 use link_protocol::StateName;
 
-use super::access::{Access, LOOK_AGAIN, Reached, report_silence};
-use super::answers::{Done, E_STOPPED, STOPPED, state};
+use super::access::{Access, LOOK_AGAIN, PortState, report_silence};
+use super::outputs::{Done, E_STOPPED, STOPPED, state};
 use super::port::{AnyPort, Pace, session_seed};
 use super::port_owner::{Ask, HeldBy, Relayed, Unanswered};
 use super::rest::{TO_REST, wait_for_rest};
@@ -67,7 +67,7 @@ fn clear(access: &Access, yes: bool, output: Output) -> Outcome {
     } else {
         "No e-stop was latched; the robot is stopped."
     };
-    output.answer(&Done {
+    output.print(&Done {
         state: state(line.robot.status()?.state),
         sentence: sentence.into(),
     });
@@ -83,7 +83,7 @@ fn run(access: &Access, ask: Ask, take_over: TakeOver, output: Output) -> Outcom
             match held_by.try_ask(ask) {
                 Ok(Some(relayed)) => {
                     if let Some(at_rest) = rest_by_holder(access, relayed) {
-                        output.answer(&at_rest.told());
+                        output.print(&at_rest.into_output());
                         return Ok(());
                     }
                 }
@@ -97,11 +97,11 @@ fn run(access: &Access, ask: Ask, take_over: TakeOver, output: Output) -> Outcom
                 }
             }
         }
-        match access.reach_named(Pace::AsFastAsPossible)? {
-            Some(Reached::Free(opened)) => break stop_at_once(access, opened.port, estop)?,
+        match access.open_named(Pace::AsFastAsPossible)? {
+            Some(PortState::Free(opened)) => break stop_at_once(access, opened.port, estop)?,
             // Another process has just taken the port: the request can go to it.
-            Some(Reached::Held(_)) if begun.elapsed() < TO_REST => sleep(LOOK_AGAIN),
-            Some(Reached::Held(held_by)) => return Err(Failure::Tried(held_by.to_string())),
+            Some(PortState::Held(_)) if begun.elapsed() < TO_REST => sleep(LOOK_AGAIN),
+            Some(PortState::Held(held_by)) => return Err(Failure::Tried(held_by.to_string())),
             None => {
                 let (_, mut robot) = access.find(Pace::AsFastAsPossible)?;
                 say_if_by_itself(if estop { robot.estop()? } else { robot.stop()? });
@@ -109,7 +109,7 @@ fn run(access: &Access, ask: Ask, take_over: TakeOver, output: Output) -> Outcom
             }
         }
     };
-    output.answer(&rest(robot, estop));
+    output.print(&rest(robot, estop));
     Ok(())
 }
 

@@ -17,8 +17,8 @@ use ratatui::DefaultTerminal;
 
 use self::nudging::{Nudging, Wish};
 use super::Trim;
-use super::access::{Access, Line};
-use super::answers::Trims;
+use super::access::{Access, RobotConnection};
+use super::outputs::Trims;
 use super::port::Pace;
 use super::rest::wait_for_rest;
 use super::watch::no_terminal;
@@ -70,11 +70,11 @@ pub(super) fn trim(access: &Access, arguments: &Trim, output: Output) -> Outcome
         }
     }
     let [front, back] = trims(&mut line)?;
-    output.answer(&Trims::new(front, back));
+    output.print(&Trims::new(front, back));
     line.close()
 }
 
-fn trims(line: &mut Line) -> Outcome<[i16; 2]> {
+fn trims(line: &mut RobotConnection) -> Outcome<[i16; 2]> {
     Ok([
         line.robot.servo(Joint::Front)?.trim,
         line.robot.servo(Joint::Back)?.trim,
@@ -108,7 +108,7 @@ fn nudge(access: &Access, output: Output) -> Outcome {
     } else {
         "Not saved: the trims are as before."
     });
-    output.answer(&Trims::new(front, back));
+    output.print(&Trims::new(front, back));
     line.close()
 }
 
@@ -119,7 +119,7 @@ fn degrees(units: i16) -> f64 {
 /// Until the operator saves or leaves.
 fn bench(
     terminal: &mut DefaultTerminal,
-    line: &mut Line,
+    line: &mut RobotConnection,
     nudging: &mut Nudging,
     interrupt: &Interrupt,
 ) -> Outcome<Wish> {

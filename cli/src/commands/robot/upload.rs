@@ -11,8 +11,8 @@ use serde::Serialize;
 use swimmer_files::{AnyGait, GaitFile, GaitSpec, SwimmerFile, SwimmerHash};
 use twin::is_configured_as;
 
-use super::access::{Access, Line};
-use super::answers::{Gait, answer_no};
+use super::access::{Access, RobotConnection};
+use super::outputs::{Gait, print_refusal};
 use super::port::Pace;
 use super::preflight::{Player, Preflight};
 use super::{Owner, Upload};
@@ -79,7 +79,7 @@ pub(super) fn run(access: &Access, arguments: &Upload, output: Output) -> Outcom
                     .to_owned(),
             ));
         };
-        return foretell_alone(arguments, &gait, &Player::of_file(file), output);
+        return forecast_only(arguments, &gait, &Player::of_file(file), output);
     }
     let mut line = access.connect("swimmer robot upload", Pace::AsFastAsPossible)?;
     let configuration = line.robot.configuration()?;
@@ -94,7 +94,7 @@ pub(super) fn run(access: &Access, arguments: &Upload, output: Output) -> Outcom
         ));
     }
     if arguments.dry_run {
-        foretell_alone(arguments, &gait, &player, output)?;
+        forecast_only(arguments, &gait, &player, output)?;
         return line.close();
     }
     let preflight = match arguments
@@ -127,7 +127,7 @@ pub(super) fn run(access: &Access, arguments: &Upload, output: Output) -> Outcom
     let info = send(&mut line, &gait, &interrupt)?;
     let seconds = line.robot.port().now().saturating_sub(begun).as_secs_f64();
     let bytes = gait.table.bytes().len();
-    output.answer(&Uploaded {
+    output.print(&Uploaded {
         gait: Gait::new(&info),
         bytes,
         seconds,
@@ -139,7 +139,7 @@ pub(super) fn run(access: &Access, arguments: &Upload, output: Output) -> Outcom
 }
 
 /// `--dry-run`: exit status 1 if the gait must not be played.
-fn foretell_alone(arguments: &Upload, gait: &Prepared, player: &Player, output: Output) -> Outcome {
+fn forecast_only(arguments: &Upload, gait: &Prepared, player: &Player, output: Output) -> Outcome {
     let preflight = arguments
         .preflight
         .foretell(&gait.name, &gait.gait, player)?;
@@ -147,9 +147,9 @@ fn foretell_alone(arguments: &Upload, gait: &Prepared, player: &Player, output: 
     let refused = refused.map(|reason| format!("{} must not be played: {reason}", gait.name));
     let foretold = Foretold { preflight };
     if let Some(reason) = refused {
-        return answer_no(output, &foretold, reason);
+        return print_refusal(output, &foretold, reason);
     }
-    output.answer(&foretold);
+    output.print(&foretold);
     Ok(())
 }
 
@@ -177,7 +177,7 @@ impl BeforePlay {
     ///
     /// # Errors
     /// [`Failure::Tried`] if it is another swimmer's or the robot refuses it, and the link's.
-    pub(super) fn send(&self, line: &mut Line, interrupt: &Interrupt) -> Outcome<u32> {
+    pub(super) fn send(&self, line: &mut RobotConnection, interrupt: &Interrupt) -> Outcome<u32> {
         if !self.force {
             let configuration = line.robot.configuration()?;
             self.gait
@@ -281,7 +281,7 @@ pub(crate) fn table_of(gait: &AnyGait) -> Result<GaitTable, gait_player::table::
     forecast::table(gait, MAX_KNOTS)
 }
 
-fn send(line: &mut Line, gait: &Prepared, interrupt: &Interrupt) -> Outcome<TableInfo> {
+fn send(line: &mut RobotConnection, gait: &Prepared, interrupt: &Interrupt) -> Outcome<TableInfo> {
     send_table(line, &gait.name, &gait.table, interrupt)
 }
 
@@ -290,7 +290,7 @@ fn send(line: &mut Line, gait: &Prepared, interrupt: &Interrupt) -> Outcome<Tabl
 /// # Errors
 /// The link's, and the robot's refusal.
 pub(super) fn send_table(
-    line: &mut Line,
+    line: &mut RobotConnection,
     name: &str,
     table: &GaitTable,
     interrupt: &Interrupt,

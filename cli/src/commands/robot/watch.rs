@@ -10,9 +10,9 @@ use link_protocol::Telemetry;
 use ratatui::DefaultTerminal;
 
 use super::Watch;
-use super::access::{Access, BEAT, Line};
-use super::answers::telemetry_line;
+use super::access::{Access, BEAT, RobotConnection};
 use super::dashboard::Dashboard;
+use super::outputs::telemetry_line;
 use super::playing::Playing;
 use super::preflight::configured;
 use crate::failure::{Failure, Outcome};
@@ -75,7 +75,7 @@ fn lines(
 
 /// Listens for this time on the port's clock, or until Ctrl-C.
 pub(super) fn listen(
-    line: &mut Line,
+    line: &mut RobotConnection,
     end: Option<Duration>,
     interrupt: &Interrupt,
     mut each: impl FnMut(&Telemetry),

@@ -107,7 +107,7 @@ impl Map {
         if let Some(path) = &self.export {
             write_atomically(path, document(&found).as_bytes())?;
         }
-        output.answer(&MapOutput::new(
+        output.print(&MapOutput::new(
             &plan,
             &found,
             doubts,

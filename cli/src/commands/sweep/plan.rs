@@ -34,11 +34,11 @@ struct PlanOutput {
     failed: u64,
     blocks: u64,
     block_size: u64,
-    axes: Vec<AxisAnswer>,
+    axes: Vec<AxisOutput>,
 }
 
 #[derive(Debug, Serialize)]
-struct AxisAnswer {
+struct AxisOutput {
     name: &'static str,
     unit: &'static str,
     /// Number of points of a grid; 0 in the other designs.
@@ -53,7 +53,7 @@ impl PlanSpec {
         })?;
         let plan = Plan::of_spec(&text, &self.spec)?;
         plan.save(&self.output)?;
-        output.answer(&PlanOutput::new(&plan, &self.output));
+        output.print(&PlanOutput::new(&plan, &self.output));
         Ok(())
     }
 }
@@ -75,7 +75,7 @@ impl PlanOutput {
             axes: plan
                 .axes()
                 .iter()
-                .map(|axis| AxisAnswer {
+                .map(|axis| AxisOutput {
                     name: axis.name.name(),
                     unit: axis.name.unit(),
                     count: if plan.design() == Design::Grid {

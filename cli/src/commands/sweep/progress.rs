@@ -13,7 +13,7 @@ use crate::quantity::Rows;
 
 /// Output of `swimmer sweep run`.
 #[derive(Debug, Serialize)]
-pub(super) struct RunAnswer {
+pub(super) struct RunOutput {
     pub(super) plan: String,
     pub(super) shard: String,
     /// Number of designs of the plan.
@@ -23,7 +23,7 @@ pub(super) struct RunAnswer {
     pub(super) seconds: f64,
 }
 
-impl fmt::Display for RunAnswer {
+impl fmt::Display for RunOutput {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut rows = Rows::default();
         rows.row("shard", &self.shard)
@@ -41,9 +41,9 @@ impl fmt::Display for RunAnswer {
 /// Progress of all shards.
 #[derive(Debug, Serialize)]
 #[serde(transparent)]
-pub(super) struct StatusAnswer(pub(super) Status);
+pub(super) struct StatusOutput(pub(super) Status);
 
-impl fmt::Display for StatusAnswer {
+impl fmt::Display for StatusOutput {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self(status) = self;
         let mut rows = Rows::default();
@@ -76,7 +76,7 @@ impl fmt::Display for StatusAnswer {
 
 /// Output of `swimmer sweep merge`.
 #[derive(Debug, Serialize)]
-pub(super) struct MergeAnswer {
+pub(super) struct MergeOutput {
     plan: String,
     tasks: u64,
     #[serde(flatten)]
@@ -86,7 +86,7 @@ pub(super) struct MergeAnswer {
     sha256: Option<String>,
 }
 
-impl MergeAnswer {
+impl MergeOutput {
     pub(super) fn new(plan: &Plan, merged: Merged, table: PathBuf) -> Outcome<Self> {
         let read = |source| FileError::Read {
             path: table.clone(),
@@ -112,7 +112,7 @@ impl MergeAnswer {
 
 const MOST_HASHED: u64 = 1 << 28;
 
-impl fmt::Display for MergeAnswer {
+impl fmt::Display for MergeOutput {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut rows = Rows::default();
         rows.row("designs", self.merged.tasks.to_string())

@@ -119,7 +119,7 @@ impl SlurmJob {
         } else {
             None
         };
-        output.answer(&SubmitOutput {
+        output.print(&SubmitOutput {
             tasks: status.tasks,
             done: status.done,
             failed: status.failed,

@@ -12,14 +12,14 @@ use swimmer_files::{Campaign, GaitSpec, Provenance, SwimmerFile};
 pub(crate) use self::page::page;
 pub(crate) use self::tables::tables;
 use super::{MeasuredCircle, ModelCircle};
-use crate::commands::calibrate::FitAnswer;
+use crate::commands::calibrate::FitOutput;
 
 /// Everything that the report shows.
 pub(crate) struct Calibration<'a> {
     pub(crate) campaign: &'a Campaign,
     pub(crate) found: &'a CampaignFit,
     pub(crate) evidence: &'a Evidence,
-    pub(crate) answer: &'a FitAnswer,
+    pub(crate) answer: &'a FitOutput,
     /// The estimate with systematics, if there is one.
     pub(crate) systematics: Option<&'a Systematics>,
     pub(crate) options: EvidenceOptions,

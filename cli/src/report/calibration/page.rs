@@ -6,7 +6,7 @@ use calibrate::{CampaignFit, Intervals, RunResult};
 
 use super::figures::{self, Coordinate};
 use super::{Calibration, model_circles};
-use crate::commands::calibrate::{AssessmentAnswer, JointsAnswer, RunAnswer, Shown};
+use crate::commands::calibrate::{AssessmentOutput, JointsOutput, ResultTable, RunOutput};
 use crate::failure::Outcome;
 use crate::quantity;
 use crate::report::figures as circles;
@@ -188,7 +188,7 @@ impl Page<'_> {
         format!("{:.0}", self.found.fit.intervals.level * 100.0)
     }
 
-    fn runs(&self) -> impl Iterator<Item = (&RunAnswer, &RunResult)> {
+    fn runs(&self) -> impl Iterator<Item = (&RunOutput, &RunResult)> {
         self.of.answer.runs.iter().zip(&self.found.runs)
     }
 
@@ -217,11 +217,11 @@ impl Page<'_> {
     }
 
     /// Budget, explanations and the runs' numbers: the tables that the command prints.
-    fn assessed(&self) -> Vec<Shown> {
-        let joints = self.of.answer.joints.iter().map(JointsAnswer::shown);
+    fn assessed(&self) -> Vec<ResultTable> {
+        let joints = self.of.answer.joints.iter().map(JointsOutput::shown);
         let assessment = self.of.answer.assessment.iter();
         joints
-            .chain(assessment.flat_map(AssessmentAnswer::shown))
+            .chain(assessment.flat_map(AssessmentOutput::shown))
             .collect()
     }
 }

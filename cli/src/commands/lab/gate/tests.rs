@@ -19,7 +19,7 @@ fn asked(
     first: &str,
     headers: &[(&str, &str)],
     here: &str,
-) -> Result<Wanted, Refusal> {
+) -> Result<PageRequest, Refusal> {
     let mut lines = vec![format!("{first} HTTP/1.1")];
     lines.extend(
         headers
@@ -32,7 +32,7 @@ fn asked(
     )
 }
 
-fn status(judged: Result<Wanted, Refusal>) -> &'static str {
+fn status(judged: Result<PageRequest, Refusal>) -> &'static str {
     judged.map_or_else(|refused| refused.status, |_| "let in")
 }
 
@@ -87,7 +87,7 @@ fn our_page_and_one_from_disk_reach_the_robot_with_the_token_alone() {
     );
     // The answer that RFC 6455 gives to its own example.
     let accept = "s3pPLMBiTxaQ9kYGzzhZRbK+xOo=".to_owned();
-    assert_eq!(accepted, Ok(Wanted::Link { accept }));
+    assert_eq!(accepted, Ok(PageRequest::Link { accept }));
 }
 
 #[test]

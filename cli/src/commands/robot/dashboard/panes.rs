@@ -11,7 +11,7 @@ use ratatui::widgets::canvas::{Canvas, Circle, Line as Stroke, Points};
 use ratatui::widgets::{Block, Gauge, Paragraph};
 use swimmer_model::Pose;
 
-use super::super::answers::{self, telemetry_angles};
+use super::super::outputs::{self, telemetry_angles};
 use super::{Dashboard, SILENT};
 
 impl Dashboard {
@@ -44,18 +44,18 @@ impl Dashboard {
             return vec![Line::from("no telemetry yet")];
         };
         let [front, back] = telemetry_angles(telemetry).map(f64::to_degrees);
-        let flags = answers::flags(telemetry.flags);
-        let moving = answers::is_under_way(telemetry.state);
+        let flags = outputs::flags(telemetry.flags);
+        let moving = outputs::is_under_way(telemetry.state);
         vec![
             Line::from(vec![
                 Span::styled(
-                    answers::state(telemetry.state),
+                    outputs::state(telemetry.state),
                     Style::new()
                         .fg(colour(telemetry.state))
                         .add_modifier(Modifier::BOLD),
                 ),
-                Span::raw(if answers::is_explained(telemetry.state) {
-                    format!("  ({})", answers::cause(telemetry.cause))
+                Span::raw(if outputs::is_explained(telemetry.state) {
+                    format!("  ({})", outputs::cause(telemetry.cause))
                 } else {
                     String::new()
                 }),
@@ -73,7 +73,7 @@ impl Dashboard {
             Line::from(format!("pulses   {}", pulses(telemetry.pulse_ns))),
             Line::from(format!(
                 "battery  {}",
-                answers::battery(telemetry.battery_mv.map(|mv| f64::from(mv) / 1e3))
+                outputs::battery(telemetry.battery_mv.map(|mv| f64::from(mv) / 1e3))
             ))
             .style(warning(telemetry.flags.contains(Flags::BATTERY_LOW))),
             Line::from(if flags.is_empty() {

@@ -183,7 +183,7 @@ fn as_typed(word: &str) -> Cow<'_, str> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::holder::Holder;
+    use super::super::holder::PortHolder;
     use super::*;
     use std::os::unix::net::UnixListener;
 
@@ -197,7 +197,7 @@ mod tests {
         drop(UnixListener::bind(&path).unwrap());
         assert!(path.exists() && HeldBy::of_in(place, port).is_none());
 
-        let holder = Holder::announce_in(Some(place), port, "swimmer robot play");
+        let holder = PortHolder::announce_in(Some(place), port, "swimmer robot play");
         let held = HeldBy::of_in(place, port).unwrap();
         let told = held.to_string();
         assert!(
@@ -222,7 +222,7 @@ mod tests {
         }
         let folder = tempfile::tempdir().unwrap();
         let _holder =
-            Holder::announce_in(Some(folder.path()), "/tmp/my robot", "swimmer robot play");
+            PortHolder::announce_in(Some(folder.path()), "/tmp/my robot", "swimmer robot play");
         let told = HeldBy::of_in(folder.path(), "/tmp/my robot")
             .unwrap()
             .to_string();
@@ -250,7 +250,7 @@ mod tests {
     #[test]
     fn a_holder_that_hears_and_does_nothing_hangs_no_estop_for_long() {
         let folder = tempfile::tempdir().unwrap();
-        let _holder = Holder::announce_in(Some(folder.path()), "/dev/rfcomm7", "x");
+        let _holder = PortHolder::announce_in(Some(folder.path()), "/dev/rfcomm7", "x");
         let held = HeldBy::of_in(folder.path(), "/dev/rfcomm7").unwrap();
         let begun = std::time::Instant::now();
         let unanswered = held.try_ask(Ask::EStop).unwrap_err();

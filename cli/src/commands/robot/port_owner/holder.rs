@@ -27,7 +27,7 @@ const LISTEN: Timespec = Timespec {
 };
 
 /// Holds the port, and receives the requests of other processes.
-pub(in super::super) struct Holder {
+pub(in super::super) struct PortHolder {
     open: Option<Open>,
     asked: Vec<(Ask, Asker)>,
     halts: HaltSignal,
@@ -52,7 +52,7 @@ struct Open {
     ended: Arc<AtomicBool>,
 }
 
-impl Holder {
+impl PortHolder {
     /// Announces that this process has the port, as `command`. If no socket can be made (on a system without a place for it), the
     /// port is held nevertheless, and other processes only see that it is busy.
     pub(in super::super) fn announce(port: &str, command: &str) -> Self {
@@ -164,7 +164,7 @@ mod tests {
     #[test]
     fn a_word_that_is_no_ask_is_passed_over() {
         let folder = tempfile::tempdir().unwrap();
-        let mut holder = Holder::announce_in(Some(folder.path()), "/dev/rfcomm7", "x");
+        let mut holder = PortHolder::announce_in(Some(folder.path()), "/dev/rfcomm7", "x");
         let socket = folder.path().join(socket_name("/dev/rfcomm7").unwrap());
         for word in ["dance\n", "", "STOP\n"] {
             let mut stream = UnixStream::connect(&socket).unwrap();

@@ -11,7 +11,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::super::answers::{Doing, Done, E_STOPPED, PAUSED_DETACHED, state};
+use super::super::outputs::{Done, E_STOPPED, PAUSED_DETACHED, RobotState, state};
 use super::super::port::AnyPort;
 use crate::failure::{Failure, Outcome};
 
@@ -117,7 +117,7 @@ impl Ask {
                 .pause(true)
                 .and_then(|()| done(robot, PAUSED_DETACHED)),
             Self::Resume => robot.resume().and_then(|()| done(robot, "Resumed.")),
-            Self::Status => Doing::of(robot).map(|doing| Relayed::of(&doing)),
+            Self::Status => RobotState::of(robot).map(|doing| Relayed::of(&doing)),
             Self::Introduce => Introduction::of(robot).map(|told| Relayed::data(&told)),
             Self::News => Ok(Relayed::data(&News::of(robot))),
         };
@@ -190,25 +190,25 @@ impl Relayed {
             .unwrap_or_default()
     }
 
-    /// The answer as the holder gave it, to be given again.
-    pub(in super::super) fn told(self) -> Told {
-        Told {
+    /// The holder's output, to be printed by this process.
+    pub(in super::super) fn into_output(self) -> RelayedOutput {
+        RelayedOutput {
             answer: self.answer,
             text: self.text,
         }
     }
 }
 
-/// An answer at second hand.
+/// Output of a request that another process has served.
 #[derive(Debug, Serialize)]
-pub(in super::super) struct Told {
+pub(in super::super) struct RelayedOutput {
     #[serde(flatten)]
     answer: Value,
     #[serde(skip)]
     text: String,
 }
 
-impl fmt::Display for Told {
+impl fmt::Display for RelayedOutput {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.text)
     }

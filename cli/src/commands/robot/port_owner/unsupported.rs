@@ -11,9 +11,9 @@ use super::relay::{Ask, Relayed, Unanswered};
 use crate::failure::Outcome;
 
 /// Holds the port without an announcement.
-pub(in super::super) struct Holder;
+pub(in super::super) struct PortHolder;
 
-impl Holder {
+impl PortHolder {
     /// Holds the port without an announcement.
     pub(in super::super) fn announce(_port: &str, _command: &str) -> Self {
         Self

@@ -4,7 +4,7 @@ use gait_player::servo::ServoMap;
 use link_protocol::{PulseRange, RobotLimits, ServoSettings};
 
 use super::operator::{degrees, takes_it};
-use super::readings::Found;
+use super::readings::ServoProperties;
 use crate::quantity;
 
 /// Result of the questions about one joint.
@@ -38,7 +38,7 @@ pub(super) fn full_range(limits: &RobotLimits) -> PulseRange {
 }
 
 /// Describes what the readings show.
-pub(super) fn told(name: &str, found: &Found, settings: &ServoSettings) -> String {
+pub(super) fn told(name: &str, found: &ServoProperties, settings: &ServoSettings) -> String {
     let mut parts = vec![
         if found.mirrored {
             "turns the other way: its sign is changed"

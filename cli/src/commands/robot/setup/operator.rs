@@ -15,7 +15,7 @@ use host_link::robot::await_play::at_rest;
 use host_link::session::cause_in_words;
 use textwrap::WordSplitter;
 
-use super::super::access::{BEAT, Line};
+use super::super::access::{BEAT, RobotConnection};
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
 use crate::output::Output;
@@ -78,7 +78,7 @@ impl Operator {
     /// [`Failure::Tried`] if the operator leaves, the answers end or the robot stops by itself.
     pub(super) fn ask<T>(
         &self,
-        line: &mut Line,
+        line: &mut RobotConnection,
         armed: bool,
         question: &str,
         read: impl Fn(&str) -> Result<T, String>,
@@ -107,7 +107,12 @@ impl Operator {
     ///
     /// # Errors
     /// The errors of the dialogue; [`Failure::Tried`] after n.
-    pub(super) fn confirm(&self, line: &mut Line, armed: bool, question: &str) -> Outcome {
+    pub(super) fn confirm(
+        &self,
+        line: &mut RobotConnection,
+        armed: bool,
+        question: &str,
+    ) -> Outcome {
         let asked = format!("{question} [Enter or y: go on; n: leave]");
         let advice = "Nothing moves before Enter or y; n leaves the setup.";
         if self.ask(line, armed, &asked, |answer| {
@@ -124,7 +129,7 @@ impl Operator {
     /// The errors of the dialogue.
     pub(super) fn yes(
         &self,
-        line: &mut Line,
+        line: &mut RobotConnection,
         armed: bool,
         question: &str,
         standard: bool,
@@ -139,7 +144,7 @@ impl Operator {
     ///
     /// # Errors
     /// The errors of the dialogue.
-    pub(super) fn wait(&self, line: &mut Line, armed: bool, time: Duration) -> Outcome {
+    pub(super) fn wait(&self, line: &mut RobotConnection, armed: bool, time: Duration) -> Outcome {
         let mut waited = Duration::ZERO;
         while waited < time {
             self.beat(line, armed)?;
@@ -148,7 +153,7 @@ impl Operator {
         Ok(())
     }
 
-    fn answer(&self, line: &mut Line, armed: bool, question: &str) -> Outcome<String> {
+    fn answer(&self, line: &mut RobotConnection, armed: bool, question: &str) -> Outcome<String> {
         loop {
             match self.answers.try_recv() {
                 Ok(answer) => return Ok(answer.trim().to_owned()),
@@ -160,7 +165,7 @@ impl Operator {
         }
     }
 
-    fn beat(&self, line: &mut Line, armed: bool) -> Outcome {
+    fn beat(&self, line: &mut RobotConnection, armed: bool) -> Outcome {
         if self.interrupt.requested() {
             return Err(Failure::Tried(format!(
                 "{}: left the setup",

@@ -26,7 +26,7 @@ pub(super) struct Readings {
 
 /// Properties of a servo, relative to the map that it was read with.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Found {
+pub(super) struct ServoProperties {
     /// It turns the other way.
     pub(super) mirrored: bool,
     /// Actual over commanded angle.
@@ -42,7 +42,7 @@ impl Readings {
     ///
     /// # Errors
     /// The reason why they cannot be those of a servo, as a sentence.
-    pub(super) fn found(&self, swing: f64) -> Result<Found, String> {
+    pub(super) fn evaluate(&self, swing: f64) -> Result<ServoProperties, String> {
         let degrees = f64::to_degrees;
         let lag = (self.after_high - self.after_low) / 2.0;
         let turned = (self.high - self.low) / 2.0 + lag;
@@ -72,7 +72,7 @@ impl Readings {
                 degrees(-2.0 * dead_band)
             ));
         }
-        Ok(Found {
+        Ok(ServoProperties {
             mirrored: turned < 0.0,
             gain: turned.abs() / swing,
             offset: f64::midpoint(middles[0], middles[1]),
@@ -81,7 +81,7 @@ impl Readings {
     }
 }
 
-impl Found {
+impl ServoProperties {
     /// The map with which the joint follows its command, given the one that it was read with (without a trim).
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // pulses of some ms; the wire's precision
     pub(super) fn settings(&self, before: &ServoSettings) -> ServoSettings {
@@ -160,10 +160,13 @@ mod tests {
                         ..ServoMap::ROBOT
                     };
                     let readings = read(truth, dead_band, AS_BUILT.into(), 1e-9);
-                    let found = readings.found(SWING).unwrap();
-                    assert_eq!(found.mirrored, reversed);
-                    assert!((found.dead_band - dead_band).abs() < 0.01, "{found:?}");
-                    let settings = found.settings(&AS_BUILT);
+                    let evaluate = readings.evaluate(SWING).unwrap();
+                    assert_eq!(evaluate.mirrored, reversed);
+                    assert!(
+                        (evaluate.dead_band - dead_band).abs() < 0.01,
+                        "{evaluate:?}"
+                    );
+                    let settings = evaluate.settings(&AS_BUILT);
                     assert_eq!(settings.reversed, reversed);
                     assert!(settings.centre_ns.abs_diff(centre_ns) < 500, "{settings:?}");
                     // Through a map that was wrong before the same is found.
@@ -173,7 +176,7 @@ mod tests {
                         ..AS_BUILT
                     };
                     let again = read(truth, dead_band, wrong.into(), 1e-9);
-                    let again = again.found(SWING).unwrap().settings(&wrong);
+                    let again = again.evaluate(SWING).unwrap().settings(&wrong);
                     assert_eq!(again.reversed, reversed);
                     assert!(again.centre_ns.abs_diff(centre_ns) < 500, "{again:?}");
                 }
@@ -192,10 +195,13 @@ mod tests {
                     reversed: true,
                     ..ServoMap::ROBOT
                 };
-                let found = read(truth, dead_band, AS_BUILT.into(), degree);
-                let found = found.found(SWING).unwrap();
-                assert!((found.dead_band - dead_band).abs() <= degree, "{found:?}");
-                let settings = found.settings(&AS_BUILT);
+                let evaluate = read(truth, dead_band, AS_BUILT.into(), degree);
+                let evaluate = evaluate.evaluate(SWING).unwrap();
+                assert!(
+                    (evaluate.dead_band - dead_band).abs() <= degree,
+                    "{evaluate:?}"
+                );
+                let settings = evaluate.settings(&AS_BUILT);
                 let straight = ServoMap::from(settings).pulse_ns(0.0);
                 assert!(
                     f64::from(truth.angle(straight)).abs() <= degree,
@@ -212,8 +218,8 @@ mod tests {
             slope_rad_per_us: 0.0274 * 1.09,
             ..ServoMap::ROBOT
         };
-        let found = read(truth, 0.05, AS_BUILT.into(), 1e-9);
-        let settings = found.found(SWING).unwrap().settings(&AS_BUILT);
+        let evaluate = read(truth, 0.05, AS_BUILT.into(), 1e-9);
+        let settings = evaluate.evaluate(SWING).unwrap().settings(&AS_BUILT);
         assert!((settings.slope_rad_per_us / truth.slope_rad_per_us - 1.0).abs() < 0.01);
     }
 
@@ -232,7 +238,7 @@ mod tests {
                 high,
                 after_high,
             };
-            let told = readings.found(SWING).unwrap_err();
+            let told = readings.evaluate(SWING).unwrap_err();
             assert!(told.contains(words), "{told}");
         }
     }

@@ -8,9 +8,9 @@ use twin::configuration;
 
 use super::super::preflight::configured;
 use super::super::servo::{self, Set};
-use super::answer::{Done, Servo};
 use super::measured::{Measured, full_range};
 use super::operator::takes_it;
+use super::output::{Done, Servo};
 use super::{Bench, JOINTS, Setup, export};
 use crate::failure::{Failure, Outcome};
 use crate::quantity;
@@ -55,8 +55,10 @@ impl Bench<'_> {
         let robot = &mut self.line.robot;
         let present = robot.configuration()?;
         let limits = robot.info().limits;
-        let reach = joints.map(|measured| measured.ends[1].max(-measured.ends[0]));
-        let max_angle = reach[0].max(reach[1]).min(f64::from(limits.max_angle));
+        let try_open = joints.map(|measured| measured.ends[1].max(-measured.ends[0]));
+        let max_angle = try_open[0]
+            .max(try_open[1])
+            .min(f64::from(limits.max_angle));
         #[allow(clippy::cast_possible_truncation)] // the wire's precision
         let wanted = Configuration {
             max_angle: limits.max_angle.min(max_angle as f32),

@@ -4,7 +4,7 @@ use clap::Parser as _;
 use link_protocol::StateName;
 
 use super::*;
-use crate::output::hand_over;
+use crate::output::capture;
 
 #[derive(clap::Parser)]
 struct Words {
@@ -78,7 +78,7 @@ struct Left {
 fn set_up(answers: &[&str]) -> Left {
     let words = Words::parse_from(["setup", "--port", "twin"]);
     let output = Output { json: false };
-    let (left, printed) = hand_over(|| {
+    let (left, printed) = capture(|| {
         let operator = Operator::with_script(answers, output);
         let mut line = words
             .access

@@ -8,7 +8,7 @@ use ratatui::style::{Color, Modifier, Style};
 use ratatui::text::Line;
 use ratatui::widgets::Paragraph;
 
-use super::super::answers;
+use super::super::outputs;
 
 /// A fine nudge: a tenth of a degree, a sixtieth of what the dead band of these servos hides.
 const FINE_DEG: f64 = 0.1;
@@ -106,9 +106,9 @@ impl Nudging {
         let powered = match self.state {
             None => "not heard: no telemetry comes".to_owned(),
             Some(state @ (StateName::Stopped | StateName::EStopped)) => {
-                format!("{}: no pulses; p powers the servos", answers::state(state))
+                format!("{}: no pulses; p powers the servos", outputs::state(state))
             }
-            Some(state) => format!("{}: the servos have power", answers::state(state)),
+            Some(state) => format!("{}: the servos have power", outputs::state(state)),
         };
         let mut text = vec![
             Line::from("Trim: nudge each servo until its joint is straight")

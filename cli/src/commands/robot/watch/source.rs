@@ -8,8 +8,8 @@ use host_link::session::{ClockFit, LinkCounters};
 use host_link::{LinkError, Port as _};
 use link_protocol::Telemetry;
 
-use super::super::access::{Access, Line, Met};
-use super::super::answers::Doing;
+use super::super::access::{Access, Contact, RobotConnection};
+use super::super::outputs::RobotState;
 use super::super::port::Pace;
 use super::super::port_owner::{Ask, Introduction, News};
 use super::super::status;
@@ -22,8 +22,8 @@ const ASK_EVERY: Duration = Duration::from_millis(200);
 
 /// Source of a watcher's telemetry.
 pub(super) enum Source<'a> {
-    Own(Box<Line>),
-    Holder(Box<Beside<'a>>),
+    Own(Box<RobotConnection>),
+    PortHolder(Box<Beside<'a>>),
 }
 
 /// Connection to the process that has the port.
@@ -55,17 +55,17 @@ impl<'a> Source<'a> {
     /// The process that has the port, or the port.
     ///
     /// # Errors
-    /// As [`Access::meet`].
+    /// As [`Access::contact`].
     pub(super) fn find(access: &'a Access) -> Outcome<Self> {
         let met = if access.logs() {
             // Frames are seen only by who has the port.
-            Met::Line(Box::new(access.connect(COMMAND, Pace::RealTime)?))
+            Contact::Direct(Box::new(access.connect(COMMAND, Pace::RealTime)?))
         } else {
-            access.meet(Ask::Introduce, COMMAND, Pace::RealTime)?
+            access.contact(Ask::Introduce, COMMAND, Pace::RealTime)?
         };
         Ok(match met {
-            Met::Line(line) => Self::Own(line),
-            Met::Relayed(relayed) => Self::Holder(Box::new(Beside {
+            Contact::Direct(line) => Self::Own(line),
+            Contact::Relayed(relayed) => Self::PortHolder(Box::new(Beside {
                 access,
                 introduction: relayed.read()?,
                 news: News::default(),
@@ -88,7 +88,7 @@ impl<'a> Source<'a> {
                 Introduction::of(&mut line.robot)?,
                 format!("at {}", line.name()),
             ),
-            Self::Holder(beside) => (
+            Self::PortHolder(beside) => (
                 beside.introduction.clone(),
                 "through the program that has its port".to_owned(),
             ),
@@ -107,7 +107,7 @@ impl<'a> Source<'a> {
                 Err(error @ LinkError::Port { .. }) => return Err(error.into()),
                 Err(error) => Beat::OutOfReach(error),
             }),
-            Self::Holder(beside) => beside.beat(),
+            Self::PortHolder(beside) => beside.beat(),
         }
     }
 
@@ -116,7 +116,7 @@ impl<'a> Source<'a> {
         match self {
             Self::Own(line) => line.robot.reconnect().is_ok(),
             // Its matter, not ours.
-            Self::Holder(_) => false,
+            Self::PortHolder(_) => false,
         }
     }
 
@@ -124,7 +124,7 @@ impl<'a> Source<'a> {
     pub(super) fn shows_silence(&mut self) {
         match self {
             Self::Own(line) => line.shows_silence(),
-            Self::Holder(beside) => {
+            Self::PortHolder(beside) => {
                 (beside.shows_silence, beside.silence_reported) = (true, true);
             }
         }
@@ -134,7 +134,7 @@ impl<'a> Source<'a> {
     pub(super) fn link(&self) -> (LinkCounters, Option<ClockFit>) {
         match self {
             Self::Own(line) => (line.robot.link_counters(), line.robot.clock()),
-            Self::Holder(beside) => (beside.news.link, beside.news.clock),
+            Self::PortHolder(beside) => (beside.news.link, beside.news.clock),
         }
     }
 
@@ -142,7 +142,7 @@ impl<'a> Source<'a> {
     pub(super) fn now(&self) -> Duration {
         match self {
             Self::Own(line) => line.robot.port().now(),
-            Self::Holder(beside) => beside.begun.elapsed(),
+            Self::PortHolder(beside) => beside.begun.elapsed(),
         }
     }
 
@@ -154,16 +154,16 @@ impl<'a> Source<'a> {
         match self {
             Self::Own(line) if estop => Ok(line.robot.estop().map(drop)?),
             Self::Own(line) => Ok(line.robot.stop().map(drop)?),
-            Self::Holder(beside) => {
+            Self::PortHolder(beside) => {
                 let ask = if estop { Ask::EStop } else { Ask::Stop };
                 beside
                     .access
-                    .meet(ask, COMMAND, Pace::RealTime)
+                    .contact(ask, COMMAND, Pace::RealTime)
                     .and_then(|met| match met {
-                        Met::Relayed(_) => Ok(()),
+                        Contact::Relayed(_) => Ok(()),
                         // It let go of the port in this very moment.
-                        Met::Line(mut line) if estop => Ok(line.robot.estop().map(drop)?),
-                        Met::Line(mut line) => Ok(line.robot.stop().map(drop)?),
+                        Contact::Direct(mut line) if estop => Ok(line.robot.estop().map(drop)?),
+                        Contact::Direct(mut line) => Ok(line.robot.stop().map(drop)?),
                     })
             }
         }
@@ -176,7 +176,7 @@ impl<'a> Source<'a> {
     pub(super) fn close(self) -> Outcome {
         match self {
             Self::Own(line) => line.close(),
-            Self::Holder(_) => Ok(()),
+            Self::PortHolder(_) => Ok(()),
         }
     }
 
@@ -187,10 +187,10 @@ impl<'a> Source<'a> {
     pub(super) fn leave(self, output: Output) -> Outcome {
         match self {
             Self::Own(mut line) => {
-                output.answer(&Doing::of(&mut line.robot)?);
+                output.print(&RobotState::of(&mut line.robot)?);
                 line.close()
             }
-            Self::Holder(beside) => status(beside.access, output),
+            Self::PortHolder(beside) => status(beside.access, output),
         }
     }
 }

@@ -11,7 +11,7 @@ use crate::failure::Outcome;
 use crate::progress::Stages;
 use crate::quantity::{self, Table};
 
-/// Questions beyond the fit.
+/// Options for computations beyond the fit.
 #[derive(Debug, Clone, clap::Args)]
 #[allow(clippy::doc_markdown)] // the help is for people: r_s, not `r_s`
 pub(super) struct BeyondFit {
@@ -44,7 +44,7 @@ impl BeyondFit {
         }
     }
 
-    /// Usual duration of [`Self::answer`], seconds, as measured on nine runs.
+    /// Usual duration of [`Self::compute`], seconds, as measured on nine runs.
     pub(super) fn weight(&self) -> f64 {
         let further = if self.fit_also.is_empty() {
             0.0
@@ -55,50 +55,50 @@ impl BeyondFit {
     }
 
     /// Computes the requested options.
-    pub(super) fn answer(
+    pub(super) fn compute(
         &self,
         campaign: &Campaign,
         found: &CampaignFit,
         stages: &mut Stages,
-    ) -> Outcome<FurtherAnswers> {
-        let mut answers = FurtherAnswers::default();
+    ) -> Outcome<BeyondFitOutput> {
+        let mut output = BeyondFitOutput::default();
         if !self.fit_also.is_empty() {
             stages.next("fitting more parameters", FITTING);
-            answers.further = Some(fit_further(found, &self.fit_also)?);
+            output.further = Some(fit_further(found, &self.fit_also)?);
         }
         if self.advise {
             stages.next("weighing what to measure next", ADVISING);
-            answers.advice = Some(advise(campaign, found)?);
+            output.advice = Some(advise(campaign, found)?);
         }
-        Ok(answers)
+        Ok(output)
     }
 }
 
-/// The answers.
+/// Output of the optional computations.
 #[derive(Debug, Clone, Default, Serialize)]
-pub(crate) struct FurtherAnswers {
+pub(crate) struct BeyondFitOutput {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) further: Option<FurtherFit>,
     #[serde(skip_serializing_if = "Option::is_none")]
     advice: Option<Advice>,
 }
 
-/// One answer as people read it, in the terminal and on the page.
-pub(crate) struct Shown {
+/// One result as a table with notes, for the terminal and the report.
+pub(crate) struct ResultTable {
     pub(crate) title: &'static str,
     pub(crate) table: Table,
     pub(crate) notes: Vec<String>,
 }
 
-impl FurtherAnswers {
-    pub(crate) fn shown(&self) -> Vec<Shown> {
+impl BeyondFitOutput {
+    pub(crate) fn shown(&self) -> Vec<ResultTable> {
         let further = self.further.as_ref().map(of_fit);
         let advice = self.advice.as_ref().map(of_advice);
         further.into_iter().chain(advice).collect()
     }
 }
 
-impl fmt::Display for Shown {
+impl fmt::Display for ResultTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.table)?;
         let mut notes = self.notes.iter();
@@ -116,7 +116,7 @@ pub(super) fn readable(unit: &str, value: f64) -> String {
     }
 }
 
-fn of_fit(fit: &FurtherFit) -> Shown {
+fn of_fit(fit: &FurtherFit) -> ResultTable {
     let mut table = Table::new(["by likelihood", "before", "fitted", "from", "to"]);
     for p in &fit.parameters {
         let [from, to] = p.interval.map(|end| readable(p.unit, end));
@@ -133,7 +133,7 @@ fn of_fit(fit: &FurtherFit) -> Shown {
             .iter()
             .map(|warning| format!("note: {warning}")),
     );
-    Shown {
+    ResultTable {
         title: "What else may be off",
         table,
         notes,
@@ -143,7 +143,7 @@ fn of_fit(fit: &FurtherFit) -> Shown {
 /// Lines of advice that people read; JSON has all.
 const SHOWN: usize = 8;
 
-fn of_advice(advice: &Advice) -> Shown {
+fn of_advice(advice: &Advice) -> ResultTable {
     let mut table = Table::new(["measure next", "interval of r_s", "of χ", "both"]);
     let percent = |width: f64| format!("{:+.1} %", 100.0 * (width - 1.0));
     for candidate in advice.candidates.iter().take(SHOWN) {
@@ -158,7 +158,7 @@ fn of_advice(advice: &Advice) -> Shown {
         "one run more with a cycle of {} s, and as many cycles and errors as the others",
         advice.period_s
     )];
-    Shown {
+    ResultTable {
         title: "What to measure next",
         table,
         notes,

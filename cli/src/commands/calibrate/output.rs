@@ -8,14 +8,14 @@ use calibrate::{Intervals, Origin, RunResult, Stretch};
 use serde::Serialize;
 use swimmer_files::GaitSpec;
 
-use super::assessment::AssessmentAnswer;
-use super::further::{FurtherAnswers, Shown};
-use super::joints::{JointsAnswer, RunJoints};
+use super::assessment::AssessmentOutput;
+use super::beyond_fit::{BeyondFitOutput, ResultTable};
+use super::joints::{JointsOutput, RunJoints};
 use crate::quantity::{self, Rows, Table};
 
 /// The cycles of one run and their means. The deviation of a single cycle is NaN, in JSON null.
 #[derive(Debug, Clone, Serialize)]
-pub(crate) struct RunAnswer {
+pub(crate) struct RunOutput {
     pub(crate) file: String,
     pub(crate) gait: String,
     /// Null for reported results without it.
@@ -35,7 +35,7 @@ pub(crate) struct RunAnswer {
     front_rule: Option<&'static str>,
     /// Source of the starts of cycles: heading, flash, log or log-and-heading; `told` without a track.
     phase: &'static str,
-    left_out: Vec<LeftOutAnswer>,
+    left_out: Vec<LeftOutOutput>,
     /// Its joint angles, if reflectors on the side links measured them.
     #[serde(skip_serializing_if = "Option::is_none")]
     joints: Option<RunJoints>,
@@ -50,7 +50,7 @@ pub(crate) struct RunAnswer {
     pub(crate) front_words: String,
 }
 
-/// Standard deviations, standard errors and lag-1 correlations of a run's cycles, except for those in [`RunAnswer`].
+/// Standard deviations, standard errors and lag-1 correlations of a run's cycles, except for those in [`RunOutput`].
 #[derive(Debug, Clone, Serialize)]
 struct Spreads {
     x_se_m: f64,
@@ -69,7 +69,7 @@ struct Spreads {
 
 /// A whole cycle that does not count.
 #[derive(Debug, Clone, Serialize)]
-pub(crate) struct LeftOutAnswer {
+pub(crate) struct LeftOutOutput {
     pub(crate) start_s: f64,
     pub(crate) reason: String,
 }
@@ -89,8 +89,8 @@ pub(crate) struct Samples {
 
 /// The cycles of all runs, and the parameters that explain them.
 #[derive(Debug, Clone, Serialize)]
-pub(crate) struct FitAnswer {
-    pub(crate) runs: Vec<RunAnswer>,
+pub(crate) struct FitOutput {
+    pub(crate) runs: Vec<RunOutput>,
     pub(crate) sphere_radius_m: f64,
     pub(crate) chi: f64,
     pub(crate) rmse: f64,
@@ -103,24 +103,24 @@ pub(crate) struct FitAnswer {
     pub(super) likelihood: Option<Likelihood>,
     /// Response of the servos to their commands, if the joint angles were measured: the mean of the runs.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) joints: Option<JointsAnswer>,
+    pub(crate) joints: Option<JointsOutput>,
     /// Warnings about the runs and the fit.
     pub(crate) warnings: Vec<String>,
     /// Assessment of the result, with reasons.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
-    pub(crate) assessment: Option<AssessmentAnswer>,
+    pub(crate) assessment: Option<AssessmentOutput>,
     #[serde(flatten)]
-    pub(crate) beyond: FurtherAnswers,
+    pub(crate) beyond: BeyondFitOutput,
 }
 
 /// Output for a single run: its cycles only.
 #[derive(Debug, Serialize)]
-pub(super) struct RunsAnswer {
-    pub(super) runs: Vec<RunAnswer>,
+pub(super) struct RunsOutput {
+    pub(super) runs: Vec<RunOutput>,
     pub(super) warnings: Vec<String>,
 }
 
-impl fmt::Display for RunsAnswer {
+impl fmt::Display for RunsOutput {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", table(&self.runs))?;
         left_out(f, &self.runs)?;
@@ -129,7 +129,7 @@ impl fmt::Display for RunsAnswer {
 }
 
 /// Front rule and phase of each run, and its whole cycles that were left out.
-fn left_out(f: &mut fmt::Formatter<'_>, runs: &[RunAnswer]) -> fmt::Result {
+fn left_out(f: &mut fmt::Formatter<'_>, runs: &[RunOutput]) -> fmt::Result {
     for run in runs {
         if run.front_rule.is_none() {
             write!(f, "\n  {}: reported, without a track", run.file)?;
@@ -158,13 +158,13 @@ fn notes(f: &mut fmt::Formatter<'_>, warnings: &[String]) -> fmt::Result {
         .try_for_each(|warning| write!(f, "\n  note: {warning}"))
 }
 
-impl fmt::Display for FitAnswer {
+impl fmt::Display for FitOutput {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut rows = Rows::default();
         let [radius, chi] = with_intervals(self.sphere_radius_m, self.chi, &self.intervals);
         rows.row("sphere radius r_s", radius)
             .row("drag ratio χ", chi);
-        if let Some(systematics) = self.assessment.iter().find_map(AssessmentAnswer::estimate) {
+        if let Some(systematics) = self.assessment.iter().find_map(AssessmentOutput::estimate) {
             let [radius, chi] = systematics;
             rows.row("r_s with systematics", radius)
                 .row("χ with systematics", chi);
@@ -187,9 +187,9 @@ impl fmt::Display for FitAnswer {
         }
         write!(f, "\n\n{rows}")?;
         notes(f, &self.warnings)?;
-        let joints = self.joints.as_ref().map(JointsAnswer::shown);
-        let assessed = self.assessment.iter().flat_map(AssessmentAnswer::shown);
-        let all: Vec<Shown> = joints
+        let joints = self.joints.as_ref().map(JointsOutput::shown);
+        let assessed = self.assessment.iter().flat_map(AssessmentOutput::shown);
+        let all: Vec<ResultTable> = joints
             .into_iter()
             .chain(assessed)
             .chain(self.beyond.shown())
@@ -218,7 +218,7 @@ pub(super) fn with_intervals(sphere_radius_m: f64, chi: f64, intervals: &Interva
     ]
 }
 
-fn table(runs: &[RunAnswer]) -> Table {
+fn table(runs: &[RunOutput]) -> Table {
     let mut table = Table::new([
         "run",
         "gait",
@@ -263,7 +263,7 @@ fn with_deviation([mean, deviation]: [f64; 2], written: fn(f64) -> String) -> St
     }
 }
 
-impl RunAnswer {
+impl RunOutput {
     /// Paths are relative to the campaign's folder, as in the campaign.
     pub(super) fn new(run: &RunResult, gait: &GaitSpec, folder: &Path) -> Self {
         let cycles = &run.cycles;
@@ -307,7 +307,7 @@ impl RunAnswer {
             left_out: cycles
                 .left_out
                 .iter()
-                .map(|(start_s, why)| LeftOutAnswer {
+                .map(|(start_s, why)| LeftOutOutput {
                     start_s: *start_s,
                     reason: why.to_string(),
                 })

@@ -11,7 +11,7 @@ use crate::{commands, negative_values_joined, parse, reason};
 
 /// Output of a command.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Answered {
+pub struct CapturedOutput {
     /// The JSON document that `--json` prints.
     pub document: String,
     /// Warnings and notes, each as standard error would show it.
@@ -20,7 +20,7 @@ pub struct Answered {
 
 /// Failure of a command.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Refused {
+pub struct CapturedFailure {
     /// The sentence that standard error would show, without its `error: `.
     pub reason: String,
     /// `true` if the arguments, or a file that they name, are invalid (exit status 2); otherwise the command ran and failed.
@@ -29,50 +29,52 @@ pub struct Refused {
     pub notes: Vec<String>,
 }
 
-/// Runs the command that these words name (without the program's own name) and gives what `--json` would print. A check that is
-/// made and not met, as of `certify`, is an answer: its document says so.
+/// Runs the command of these arguments (without the program's own name) and returns the output of `--json`. A check that fails,
+/// as of `certify`, is an output: its document says so.
 ///
 /// Nothing is printed, and Ctrl-C stays the caller's. For commands that compute; those that drive a robot want a program of their
 /// own, which Ctrl-C stops.
 ///
 /// # Errors
-/// [`Refused`], with the command's own sentence.
+/// [`CapturedFailure`], with the command's own sentence.
 ///
 /// ```
 /// let words = ["simulate", "--swimmer", "purcell", "--gait", "circle:1.6331625"];
-/// let answered = swimmer_command::answer(words.map(Into::into)).unwrap();
-/// assert!(answered.document.contains("\"displacement_over_length\": 0.08228539"));
+/// let output = swimmer_command::run_captured(words.map(Into::into)).unwrap();
+/// assert!(output.document.contains("\"displacement_over_length\": 0.08228539"));
 ///
-/// let refused = swimmer_command::answer(["simulate", "--swimmer", "purcel"].map(Into::into)).unwrap_err();
-/// assert!(refused.bad_input && refused.reason.contains("--gait"));
+/// let failure = swimmer_command::run_captured(["simulate", "--swimmer", "purcel"].map(Into::into)).unwrap_err();
+/// assert!(failure.bad_input && failure.reason.contains("--gait"));
 /// ```
-pub fn answer(words: impl IntoIterator<Item = OsString>) -> Result<Answered, Refused> {
+pub fn run_captured(
+    words: impl IntoIterator<Item = OsString>,
+) -> Result<CapturedOutput, CapturedFailure> {
     let words = [OsString::from("swimmer")].into_iter().chain(words);
-    let arguments = parse(&negative_values_joined(words)).map_err(|error| Refused {
+    let arguments = parse(&negative_values_joined(words)).map_err(|error| CapturedFailure {
         reason: reason(&error),
         bad_input: true,
         notes: Vec::new(),
     })?;
-    let (outcome, said) =
-        output::hand_over(|| commands::run(arguments.command, Output { json: true }));
+    let (outcome, captured) =
+        output::capture(|| commands::run(arguments.command, Output { json: true }));
     match outcome {
-        Ok(()) => Ok(said.into_answer()),
-        Err(Failure::Answered(reason)) => {
-            let mut answered = said.into_answer();
-            answered.notes.push(with_places(&reason));
-            Ok(answered)
+        Ok(()) => Ok(captured.into_output()),
+        Err(Failure::AlreadyPrinted(reason)) => {
+            let mut output = captured.into_output();
+            output.notes.push(with_places(&reason));
+            Ok(output)
         }
-        Err(failure) => Err(Refused {
+        Err(failure) => Err(CapturedFailure {
             reason: with_places(&failure.to_string()),
             bad_input: matches!(failure, Failure::BadInput(_)),
-            notes: said.asides,
+            notes: captured.asides,
         }),
     }
 }
 
-impl output::HandedOver {
-    fn into_answer(self) -> Answered {
-        Answered {
+impl output::Captured {
+    fn into_output(self) -> CapturedOutput {
+        CapturedOutput {
             document: self.document,
             notes: self.asides,
         }

@@ -9,14 +9,14 @@ use crate::commands::robot::servo::{centre_us, nanoseconds};
 
 /// Deviations of one servo from those as built.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Servo {
+pub(super) struct ServoDeviation {
     joint: usize,
     reversed: Option<bool>,
     centre_ns: Option<u32>,
     slope_rad_per_us: Option<f32>,
 }
 
-impl Servo {
+impl ServoDeviation {
     /// Builds it in.
     pub(super) fn fit(&self, shafts: &mut [ServoMap; 2]) {
         let Some(shaft) = shafts.get_mut(self.joint) else {
@@ -29,13 +29,13 @@ impl Servo {
 }
 
 /// A servo on the command line.
-pub(super) fn servo(text: &str) -> Result<Servo, String> {
+pub(super) fn servo(text: &str) -> Result<ServoDeviation, String> {
     let advice = || {
         "write a joint and what is odd of its servo: front:sign=-,centre=1512,slope=0.0287"
             .to_owned()
     };
     let (joint, oddities) = text.split_once(':').ok_or_else(advice)?;
-    let mut servo = Servo {
+    let mut servo = ServoDeviation {
         joint: match joint.trim() {
             "front" => 0,
             "back" => 1,

@@ -28,17 +28,17 @@ impl<A: fmt::Display> fmt::Display for Failed<'_, A> {
 /// Prints an output that reports a refusal, with the reason, and fails with that.
 ///
 /// # Errors
-/// Always, with [`Failure::Answered`].
-pub(super) fn answer_no(
+/// Always, with [`Failure::AlreadyPrinted`].
+pub(super) fn print_refusal(
     output: Output,
     answer: &(impl Serialize + fmt::Display),
     reason: String,
 ) -> Outcome {
-    output.answer(&Failed {
+    output.print(&Failed {
         answer,
         error: &reason,
     });
-    Err(Failure::Answered(reason))
+    Err(Failure::AlreadyPrinted(reason))
 }
 
 /// Output of a request that returns nothing but the robot's state.
@@ -122,7 +122,7 @@ pub(super) fn gait_line(gait: Option<&Gait>) -> String {
 
 /// State of the robot.
 #[derive(Debug, Serialize)]
-pub(super) struct Doing {
+pub(super) struct RobotState {
     pub(super) state: &'static str,
     /// Cause of the last stop, whatever the robot does now.
     cause: &'static str,
@@ -163,7 +163,7 @@ impl fmt::Display for Presence {
     }
 }
 
-impl Doing {
+impl RobotState {
     /// Asks the robot for its status.
     ///
     /// # Errors
@@ -205,7 +205,7 @@ impl Doing {
     }
 }
 
-impl fmt::Display for Doing {
+impl fmt::Display for RobotState {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut rows = Rows::default();
         let state = if self.explained {

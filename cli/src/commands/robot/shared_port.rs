@@ -14,16 +14,16 @@ use host_link::robot::Halt;
 use host_link::session::{Event, Session, SessionConfig, Ticket};
 use link_protocol::{Decoder, Message, StateName, Telemetry};
 
-use super::access::{A_MOMENT, reach_alone};
-use super::answers::{Done, state};
+use super::access::{A_MOMENT, open_when_free};
+use super::outputs::{Done, state};
 use super::port::{AnyPort, BAUD, Means, Pace, open, session_seed};
-use super::port_owner::{Ask, Holder, Relayed};
+use super::port_owner::{Ask, PortHolder, Relayed};
 use crate::failure::Outcome;
 use crate::virtual_robot::EmulatedBoard;
 
 /// Port and speed.
 #[derive(Debug, clap::Args)]
-pub(crate) struct PortToLend {
+pub(crate) struct SharedPortOptions {
     /// Let the page drive this robot: a serial port, pseudo-terminal, tcp:HOST:PORT, `twin` or `emulator`
     #[arg(long, value_name = "PORT")]
     port: Option<String>,
@@ -35,23 +35,23 @@ pub(crate) struct PortToLend {
 }
 
 /// A port whose bytes others send and read.
-pub(crate) struct LentPort {
+pub(crate) struct SharedPort {
     name: String,
     means: Means,
     /// `None` while the cable is pulled.
     port: Option<AnyPort>,
-    holder: Holder,
+    holder: PortHolder,
     outbound: SendQueue,
     /// Repeats a stop until the robot has acknowledged it.
     stopping: Option<(Session, Ticket)>,
-    heard: Decoder,
-    told: Option<Telemetry>,
-    looked: Instant,
+    decoder: Decoder,
+    telemetry: Option<Telemetry>,
+    last_try: Instant,
 }
 
 /// Result of a short wait at the port.
 #[derive(Debug, PartialEq, Eq)]
-pub(crate) enum Heard {
+pub(crate) enum PortEvent {
     /// Number of bytes; 0 after a timeout.
     Bytes(usize),
     /// The port went away; it is looked for from now on.
@@ -60,12 +60,12 @@ pub(crate) enum Heard {
     Back,
 }
 
-impl PortToLend {
+impl SharedPortOptions {
     /// Opens the port, if one was named; other processes see `command` as its holder.
     ///
     /// # Errors
     /// [`crate::failure::Failure::Tried`] when it cannot be opened or somebody else has it.
-    pub(crate) fn open(self, command: &str) -> Outcome<Option<LentPort>> {
+    pub(crate) fn open(self, command: &str) -> Outcome<Option<SharedPort>> {
         let Some(name) = self.port else {
             return Ok(None);
         };
@@ -75,22 +75,22 @@ impl PortToLend {
             session: SessionConfig::new(session_seed()),
             board: self.board,
         };
-        let port = reach_alone(&name, &means)?.port;
-        Ok(Some(LentPort {
-            holder: Holder::announce(&name, command),
+        let port = open_when_free(&name, &means)?.port;
+        Ok(Some(SharedPort {
+            holder: PortHolder::announce(&name, command),
             name,
             outbound: SendQueue::paced(bytes_per_second(&means)),
             means,
             port: Some(port),
             stopping: None,
-            heard: Decoder::new(),
-            told: None,
-            looked: Instant::now(),
+            decoder: Decoder::new(),
+            telemetry: None,
+            last_try: Instant::now(),
         }))
     }
 }
 
-impl LentPort {
+impl SharedPort {
     /// Name of the port.
     pub(crate) fn name(&self) -> &str {
         &self.name
@@ -112,10 +112,10 @@ impl LentPort {
     }
 
     /// Waits for bytes of the robot, serves requests of other programs, and repeats a stop that was not acknowledged.
-    pub(crate) fn read(&mut self, buf: &mut [u8], timeout: Duration) -> Heard {
+    pub(crate) fn read(&mut self, buf: &mut [u8], timeout: Duration) -> PortEvent {
         self.serve_others();
         let Some(port) = &mut self.port else {
-            return self.look_again(timeout);
+            return self.reopen(timeout);
         };
         let count = match self
             .outbound
@@ -126,15 +126,15 @@ impl LentPort {
             Err(error) => return self.gone(&error),
         };
         let bytes = buf.get(..count).unwrap_or_default();
-        self.hear(bytes);
+        self.decode(bytes);
         match self.drive_stop(bytes) {
-            Ok(()) => Heard::Bytes(count),
+            Ok(()) => PortEvent::Bytes(count),
             Err(error) => self.gone(&error),
         }
     }
 
     /// Sends whole frames. A port that is too slow or gone loses them, as any link does; stops overtake all others.
-    pub(crate) fn write(&mut self, frames: &[u8]) -> Option<Heard> {
+    pub(crate) fn write(&mut self, frames: &[u8]) -> Option<PortEvent> {
         let port = self.port.as_mut()?;
         self.outbound.push(frames);
         let error = self.outbound.drive(port).err()?;
@@ -165,23 +165,24 @@ impl LentPort {
 
     /// State of the robot, according to the last telemetry that passed through.
     fn state(&self) -> Option<StateName> {
-        self.told.map(|told| told.state)
+        self.telemetry.map(|telemetry| telemetry.state)
     }
 
-    fn hear(&mut self, bytes: &[u8]) {
+    fn decode(&mut self, bytes: &[u8]) {
         for byte in bytes {
-            if let Some(Message::Telemetry(told)) = self
-                .heard
+            if let Some(Message::Telemetry(telemetry)) = self
+                .decoder
                 .push(*byte)
                 .and_then(|received| received.message.ok())
             {
-                self.told = Some(told);
+                self.telemetry = Some(telemetry);
             }
         }
     }
 
     fn drive_stop(&mut self, bytes: &[u8]) -> io::Result<()> {
-        let (Some((session, asked)), Some(port)) = (&mut self.stopping, &mut self.port) else {
+        let (Some((session, stop_ticket)), Some(port)) = (&mut self.stopping, &mut self.port)
+        else {
             return Ok(());
         };
         let now = port.now();
@@ -195,7 +196,7 @@ impl LentPort {
                 event,
                 Event::Answered { ticket, .. }
                 | Event::StoppedByItself { ticket, .. }
-                | Event::Failed { ticket, .. } if ticket == *asked
+                | Event::Failed { ticket, .. } if ticket == *stop_ticket
             );
         }
         if ended {
@@ -205,29 +206,29 @@ impl LentPort {
         self.outbound.drive(port)
     }
 
-    fn gone(&mut self, error: &io::Error) -> Heard {
+    fn gone(&mut self, error: &io::Error) -> PortEvent {
         self.port = None;
         self.outbound = SendQueue::paced(bytes_per_second(&self.means));
         self.stopping = None;
-        self.told = None;
-        self.heard = Decoder::new();
-        self.looked = Instant::now();
-        Heard::Gone(format!("{} is gone: {error}", self.name))
+        self.telemetry = None;
+        self.decoder = Decoder::new();
+        self.last_try = Instant::now();
+        PortEvent::Gone(format!("{} is gone: {error}", self.name))
     }
 
-    fn look_again(&mut self, wait: Duration) -> Heard {
-        if self.looked.elapsed() < A_MOMENT / 2 {
+    fn reopen(&mut self, wait: Duration) -> PortEvent {
+        if self.last_try.elapsed() < A_MOMENT / 2 {
             std::thread::sleep(wait);
-            return Heard::Bytes(0);
+            return PortEvent::Bytes(0);
         }
-        self.looked = Instant::now();
+        self.last_try = Instant::now();
         // Others know already that it is ours.
         match open(&self.name, &self.means) {
             Ok(opened) => {
                 self.port = Some(opened.port);
-                Heard::Back
+                PortEvent::Back
             }
-            Err(_) => Heard::Bytes(0),
+            Err(_) => PortEvent::Bytes(0),
         }
     }
 

@@ -7,19 +7,19 @@ use serde::Serialize;
 
 use super::race::Race;
 use super::{BEST, CYCLES, Finished, REPORT};
-use crate::commands::calibrate::FitAnswer;
+use crate::commands::calibrate::FitOutput;
 use crate::quantity::{self, Table};
 
 /// Results of the round, and their files.
 #[derive(Debug, Serialize)]
-pub(super) struct DemoAnswer {
+pub(super) struct DemoOutput {
     gait: String,
     played_cycles: u32,
     displacement_predicted_m: f64,
     displacement_tracked_m: f64,
     /// The fastest and the farthest gait, both at the servos' full rate.
     race: Race,
-    fit: FitAnswer,
+    fit: FitOutput,
     report: String,
     /// True parameters, for comparison with fit and prediction.
     truth: Truth,
@@ -35,7 +35,7 @@ struct Truth {
     chi: f64,
 }
 
-impl DemoAnswer {
+impl DemoOutput {
     pub(super) fn new(round: &Finished, place: &Path) -> Self {
         Self {
             gait: place.join(BEST).display().to_string(),
@@ -58,7 +58,7 @@ impl DemoAnswer {
     }
 }
 
-impl fmt::Display for DemoAnswer {
+impl fmt::Display for DemoOutput {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let percent = self.fit.intervals.level * 100.0;
         let mut table = Table::new(["", "found", "interval", "truth", "deviation"]);
