@@ -93,6 +93,18 @@ impl Given for QuarterBounds {
 }
 
 impl WholeBounds {
+    /// The limits of the robot alone (`--playable`).
+    pub(crate) fn for_playing() -> Self {
+        Self {
+            max_angle: None,
+            links: LinkBounds {
+                no_overlap: false,
+                clearance: None,
+                playable: true,
+            },
+        }
+    }
+
     /// `true` if the gait must be playable on the robot.
     pub(crate) fn playable(&self) -> bool {
         self.links.playable

@@ -21,6 +21,28 @@ pub(crate) struct Recording {
     likelihood: Option<f64>,
 }
 
+/// Axes and unit of cameras that see the robot now.
+#[derive(Debug, Clone, Default, clap::Args)]
+pub(crate) struct LiveAxes {
+    /// Metres per unit of the source
+    #[arg(long, value_name = "METRES", value_parser = positive)]
+    scale: Option<f64>,
+    /// Which of the source's axes are the tank's x and y: x,-y for an image, z,x for Y up
+    #[arg(long, value_name = "X,Y", value_parser = axes, allow_hyphen_values = true)]
+    axes: Option<Axes>,
+}
+
+impl LiveAxes {
+    /// Options of the reader.
+    pub(crate) fn options(&self) -> TrackOptions {
+        TrackOptions {
+            metres_per_unit: self.scale,
+            axes: self.axes,
+            ..TrackOptions::default()
+        }
+    }
+}
+
 impl Recording {
     /// Options of the reader.
     pub(crate) fn options(&self) -> TrackOptions {

@@ -1,7 +1,7 @@
 //! Match of the clocks of robot and cameras.
 //!
-//! Two sources: frames arrive after their exposure by at most a known delay, which bounds the offset; and the heading oscillates
-//! within a cycle as the model predicts from the robot's own clock, which gives the offset within that bound
+//! Two sources: frames arrive after their exposure by at most a known delay, which bounds the offset ([`Delays`](crate::Delays)); and
+//! the heading oscillates within a cycle as the model predicts from the robot's own clock, which gives the offset within that bound
 //! (cross-correlation, with a line taken out and the amplitude left free).
 
 use nalgebra::{Matrix3, Vector3};
@@ -14,6 +14,14 @@ const SCAN_STEP: f64 = 0.004;
 const FEWEST_POSES: usize = 24;
 /// A match with a larger uncertainty is rejected \[s\].
 const LARGEST_UNCERTAINTY: f64 = 0.05;
+/// Longest delay of the quickest frames that is searched \[s\].
+const LONGEST_DELAY: f64 = 0.3;
+/// Uncertainty of the link's clock fit \[s\].
+const LINK_UNCERTAINTY: f64 = 0.03;
+/// A match that is more uncertain does not date poses \[s\].
+const USEFUL_UNCERTAINTY: f64 = 0.02;
+/// Scatter of the start of a play by the link \[s\].
+const PLAYS_DIFFER: f64 = 0.005;
 /// Amplitudes of the measured oscillation over the predicted one that count as the predicted gait.
 const AMPLITUDES: std::ops::RangeInclusive<f64> = 0.6..=1.6;
 
@@ -30,26 +38,87 @@ pub struct ClockMatch {
     pub poses: usize,
 }
 
-/// Bounds of the offset by arrival times.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Arrivals {
-    quickest: Option<f64>,
+/// Delay of the cameras that their frames do not state, measured by the plays of the robot.
+///
+/// Poses are dated by the quickest frames ([`Delays`](crate::Delays)), so all of them are late by the time that even those were under
+/// way. Each play shows that time: its heading oscillates when the robot's clock says. Estimates of several plays are averaged.
+#[derive(Debug, Default)]
+pub struct CameraDelay {
+    cycle: Option<FirstCycle>,
+    /// Mean delay \[s\] and its weight \[1/s²\].
+    mean: Option<WeightedDelay>,
 }
 
-impl Arrivals {
-    /// Takes a frame: its time on the cameras' clock, and the robot's clock at its arrival, by the link's clock fit \[s\].
-    pub fn push(&mut self, camera_s: f64, robot_s: f64) {
-        let offset = robot_s - camera_s;
-        if offset.is_finite() {
-            self.quickest = Some(self.quickest.map_or(offset, |before| before.min(offset)));
+/// First cycle of a play under way.
+#[derive(Debug)]
+struct FirstCycle {
+    course: Course,
+    began_s: f64,
+    poses: Vec<Pose>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct WeightedDelay {
+    delay_s: f64,
+    weight: f64,
+}
+
+impl CameraDelay {
+    /// A play began at a time \[s\] on the clock that dates the poses; its first cycle takes this course.
+    pub fn began(&mut self, course: Course, began_s: f64) {
+        self.cycle = Some(FirstCycle {
+            course,
+            began_s,
+            poses: Vec::new(),
+        });
+    }
+
+    /// Drops the cycle under way: the play was interrupted.
+    pub fn interrupt(&mut self) {
+        self.cycle = None;
+    }
+
+    /// Takes a pose, and dates it earlier by the delay that is known.
+    pub fn dated(&mut self, pose: &Pose) -> Pose {
+        if let Some(cycle) = &mut self.cycle {
+            let time_s = pose.time_s - cycle.began_s;
+            if time_s > cycle.course.duration_s() {
+                self.measure();
+            } else if time_s >= 0.0 {
+                cycle.poses.push(*pose);
+            }
+        }
+        Pose {
+            time_s: pose.time_s - self.delay_s().unwrap_or(0.0),
+            ..*pose
         }
     }
 
-    /// Smallest and largest offset \[s\] if the quickest frame was under way for at most `longest_delay_s`, and the link's clock
-    /// fit is uncertain by `link_s`. `None` before the first frame.
-    pub fn bounds(&self, longest_delay_s: f64, link_s: f64) -> Option<[f64; 2]> {
-        let quickest = self.quickest?;
-        Some([quickest - longest_delay_s - link_s, quickest + link_s])
+    /// The delay \[s\]; `None` until a play has shown it.
+    pub fn delay_s(&self) -> Option<f64> {
+        self.mean.map(|mean| mean.delay_s)
+    }
+
+    fn measure(&mut self) {
+        let Some(cycle) = self.cycle.take() else {
+            return;
+        };
+        let bounds = [-LONGEST_DELAY, LINK_UNCERTAINTY];
+        let matched = match_clocks(&cycle.poses, &cycle.course, cycle.began_s, bounds);
+        let Some(matched) = matched.filter(|matched| matched.uncertainty_s < USEFUL_UNCERTAINTY)
+        else {
+            return;
+        };
+        let weight = 1.0 / matched.uncertainty_s.hypot(PLAYS_DIFFER).powi(2);
+        let before = self.mean.unwrap_or(WeightedDelay {
+            delay_s: 0.0,
+            weight: 0.0,
+        });
+        let total = before.weight + weight;
+        self.mean = Some(WeightedDelay {
+            delay_s: (before.delay_s * before.weight - matched.offset_s * weight) / total,
+            weight: total,
+        });
     }
 }
 

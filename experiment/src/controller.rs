@@ -25,7 +25,7 @@ use swimmer_model::wrapped_angle;
 use crate::learning::{Learning, TrackedCycle};
 use crate::monitor::{CycleReport, Likeness, Monitor};
 use crate::pose::mean;
-use crate::{Course, Pose};
+use crate::{Course, Event, Interruption, Pose};
 
 pub use ending::Ending;
 
@@ -181,6 +181,20 @@ impl Controller {
             operator_stop: false,
             reports: Vec::new(),
             ending: None,
+        }
+    }
+
+    /// Takes an event of robot and cameras.
+    pub fn event(&mut self, event: &Event) {
+        match event {
+            Event::Pose(pose) => self.pose(pose),
+            Event::Began(began_s) => self.play_began(*began_s),
+            Event::AtRest(now_s) => self.at_rest(*now_s),
+            Event::Interrupted(Interruption::Operator) => self.operator_stop(),
+            Event::Interrupted(Interruption::Robot(reason)) => self.robot_stopped(reason),
+            Event::Interrupted(Interruption::Link(reason)) => {
+                self.robot_stopped(&format!("the link was lost: {reason}"));
+            }
         }
     }
 

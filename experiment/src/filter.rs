@@ -12,7 +12,6 @@
 //! A pose that jumps is believed after a few frames that agree, and reported as [`FilterEvent::Jumped`].
 
 mod body;
-mod delays;
 mod estimate;
 mod kinematics;
 mod lone;
@@ -21,13 +20,16 @@ mod order;
 mod pairs;
 mod sides;
 
+use std::f64::consts::{FRAC_PI_2, PI};
+
 use calibrate::{PairFollower, SideFollower, Sighting, is_called};
 use nalgebra::Vector2;
 use pose_source::{Frame, Marker};
-use swimmer_files::PointName;
+use swimmer_files::{PointName, Reflectors};
+use swimmer_model::wrapped_angle;
 
+use crate::delays::Delays;
 use crate::pose::Pose;
-use delays::Delays;
 use estimate::{Estimate, Variances};
 pub use options::{FilterCounts, FilterEvent, FilterOptions};
 use order::Order;
@@ -119,7 +121,7 @@ impl PoseFilter {
         if self.options.reflectors.body.is_some() {
             return self.is_found();
         }
-        self.has_names() && self.order.is_settled()
+        self.is_found() && self.has_names() && self.order.is_settled()
     }
 
     /// Pose at the last frame; `None` if the robot is not found.
@@ -184,6 +186,25 @@ impl PoseFilter {
     pub fn turn_round(&mut self) {
         self.order = Order::settled(!self.order.exchanged);
         self.estimate = None;
+    }
+
+    /// Settles which end is the front by the heading, which the caller knows within 90°: for reflectors without names. Returns
+    /// `false` if the robot is not found yet.
+    pub fn face(&mut self, heading_rad: f64) -> bool {
+        let Some(estimate) = self.estimate else {
+            return false;
+        };
+        let pose = estimate.pose().placed();
+        let turn = wrapped_angle(pose.theta - heading_rad).abs() > FRAC_PI_2;
+        self.order = Order::settled(self.order.exchanged != turn);
+        if turn {
+            let Reflectors { front, back, .. } = &self.options.reflectors;
+            let centre = pose.transform(&(Vector2::from(front.at) + Vector2::from(back.at)));
+            let heading = wrapped_angle(pose.theta + PI);
+            let pose = swimmer_model::Pose::new(centre.x, centre.y, heading);
+            self.begin(estimate.time_s, &pose, self.variances());
+        }
+        true
     }
 
     /// Takes a frame.

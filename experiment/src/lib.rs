@@ -12,10 +12,11 @@
 //!   latency ([`FilterEvent`]: found, lost, jumped).
 //! - [`Pose`]: tracked pose of the middle link, with its time and its standard deviations.
 //! - [`Course`]: predicted shapes and poses of a play or of a cycle over time.
-//! - [`match_clocks`]: offset between the clocks of robot and cameras, from arrival times ([`Arrivals`]) and the oscillation within
-//!   a cycle.
+//! - [`match_clocks`]: offset between the clocks of robot and cameras, from arrival times ([`Delays`]) and the oscillation within
+//!   a cycle; [`CameraDelay`] does so play by play, and dates the poses.
 //! - [`Monitor`]: one [`CycleReport`] a cycle: displacement and net turn with intervals against the prediction, and a
 //!   [`Departure`] if the robot does not follow it.
+//! - [`TrackedPlay`]: a play of one gait under the monitor, with the motion over all its cycles.
 //! - [`Controller`]: drives to poses or holds a heading ([`Goal`]). After each cycle it chooses the next ([`Request`]) and learns
 //!   the robot's gains and drift; it ends with a named reason ([`Ending`]).
 //! - [`unattended`]: an experiment of many trials without an operator: plan, run, journal, comparison.
@@ -25,16 +26,22 @@
 mod clock;
 mod controller;
 mod course;
+mod delays;
+mod event;
 mod filter;
 mod fit;
 mod learning;
 mod monitor;
 mod pose;
+mod tracked_play;
 pub mod unattended;
 
-pub use clock::{Arrivals, ClockMatch, match_clocks};
+pub use clock::{CameraDelay, ClockMatch, match_clocks};
 pub use controller::{Controller, Ending, Goal, Options, Request, Target};
 pub use course::Course;
+pub use delays::Delays;
+pub use event::{Event, Interruption};
 pub use filter::{FilterCounts, FilterEvent, FilterOptions, JointAngle, PoseFilter};
 pub use monitor::{CycleReport, Departure, Likeness, MeasuredMotion, Monitor};
 pub use pose::Pose;
+pub use tracked_play::{GaitOnRobot, TankWalls, TrackedPlay};

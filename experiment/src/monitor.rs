@@ -45,6 +45,32 @@ pub struct MeasuredMotion {
     pub interval_m: f64,
     /// Half width of the interval of the turn \[rad\].
     pub interval_rad: f64,
+    /// Pose at the start, in the tank.
+    pub from: swimmer_model::Pose<f64>,
+    /// Pose at the end.
+    pub to: swimmer_model::Pose<f64>,
+}
+
+impl MeasuredMotion {
+    /// Motion from the start of one cycle to the end of a later one, or of the same.
+    pub fn spanning(first: &Self, last: &Self) -> Self {
+        let net = first.from.inverse() * last.to;
+        let lever = |motion: &Self| (motion.to.position() - motion.from.position()).norm_squared();
+        let noise =
+            |motion: &Self| motion.interval_m.powi(2) - lever(motion) * motion.interval_rad.powi(2);
+        let mean = |of: &dyn Fn(&Self) -> f64| f64::midpoint(of(first), of(last));
+        let turn_noise = mean(&|motion| motion.interval_rad.powi(2));
+        let spanned = (last.to.position() - first.from.position()).norm_squared();
+        Self {
+            x_m: net.x,
+            y_m: net.y,
+            turn_rad: net.theta,
+            interval_m: (mean(&noise).max(0.0) + spanned * turn_noise).sqrt(),
+            interval_rad: turn_noise.sqrt(),
+            from: first.from,
+            to: last.to,
+        }
+    }
 }
 
 /// Likely cause of a departure.
@@ -301,6 +327,8 @@ fn measured(fit: &Fit) -> Option<MeasuredMotion> {
         turn_rad: net.theta,
         interval_m: NORMAL_95 * sigma,
         interval_rad: NORMAL_95 * turn_sigma,
+        from: start,
+        to: end,
     })
 }
 

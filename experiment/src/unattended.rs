@@ -20,5 +20,5 @@ mod spec;
 pub use compare::{Better, Comparison, GaitSummary, Measure, compare};
 pub use journal::{Entry, Journal, JournalError, MeasuredCycle, Record};
 pub use plan::{LeftOut, Plan, PlannedGait, Trial, randomised};
-pub use run::{Event, GaitOnRobot, Interruption, Request, Run, RunEnding};
+pub use run::{Request, Run, RunEnding};
 pub use spec::{GaitSource, Spec, SpecGait, SpecPeriod, StartPose, StopRules};

@@ -3,7 +3,7 @@
 use clap::Command;
 
 /// The words of a command, and what is typed after `swimmer`.
-pub(super) const EXAMPLES: [(&str, &str); 61] = [
+pub(super) const EXAMPLES: [(&str, &str); 62] = [
     ("demo", "demo --swimmer robot -o demo"),
     (
         "simulate",
@@ -93,6 +93,10 @@ pub(super) const EXAMPLES: [(&str, &str); 61] = [
     (
         "robot play",
         "robot play --gait circle:70deg --cycles 3 --period 30 --port /tmp/robot",
+    ),
+    (
+        "robot go",
+        "robot go --port twin --track twin --tank 1.2x1.2 --to 0.1,-0.05,90deg --gaits gaits",
     ),
     ("robot pause", "robot pause --detach --port /tmp/robot"),
     ("robot resume", "robot resume --port /tmp/robot"),

@@ -23,7 +23,7 @@ use crate::output::Output;
 #[derive(Debug, Subcommand)]
 pub(crate) enum Experiment {
     Plan(plan::PlanSpec),
-    Run(run::RunPlan),
+    Run(Box<run::RunPlan>),
     Status(status::Status),
     Report(report::ReportPlan),
     Pack(pack::Pack),

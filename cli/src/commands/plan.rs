@@ -57,13 +57,13 @@ pub(crate) struct Plan {
 
 /// A place, perhaps with a heading.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Target {
-    x: f64,
-    y: f64,
-    heading: Option<f64>,
+pub(crate) struct Target {
+    pub(crate) x: f64,
+    pub(crate) y: f64,
+    pub(crate) heading: Option<f64>,
 }
 
-fn target(text: &str) -> Result<Target, String> {
+pub(crate) fn target(text: &str) -> Result<Target, String> {
     let bad = || format!("`{text}` is no place: give X,Y or X,Y,ANGLE, as 0.2,-0.1,90deg");
     let parts: Vec<&str> = text.split(',').map(str::trim).collect();
     let metres = |part: &str| {
@@ -181,7 +181,7 @@ pub(crate) fn family_in(folder: &Path, rates: [f64; 2]) -> Outcome<Family> {
 }
 
 /// The gaits that are found.
-fn joined(steer: &Steer, file: &SwimmerFile) -> Outcome<Family> {
+pub(crate) fn joined(steer: &Steer, file: &SwimmerFile) -> Outcome<Family> {
     let steering = steer.find(file)?;
     let gaits = [0, 2, 4].map(|at| {
         let (_, joined, _) = named(&steering)[at];

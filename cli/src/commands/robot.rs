@@ -6,6 +6,7 @@ mod configure;
 mod dashboard;
 mod find;
 mod flash;
+mod go;
 mod hc05;
 mod info;
 mod key;
@@ -22,6 +23,8 @@ pub(super) mod servo;
 mod setup;
 mod shared_port;
 mod stop;
+mod tank_cameras;
+mod tracking;
 mod trim;
 mod upload;
 mod watch;
@@ -38,6 +41,7 @@ use self::outputs::RobotState;
 use self::port::Pace;
 use self::port_owner::Ask;
 pub(crate) use self::shared_port::{PortEvent, SharedPort, SharedPortOptions};
+pub(crate) use self::tracking::Tracked;
 pub(crate) use self::upload::table_of;
 use crate::arguments::{gait, period, positive_angle, rate, seconds, time};
 use crate::failure::{Failure, Outcome};
@@ -72,6 +76,7 @@ enum Action {
     Arm(Arm),
     /// Play the active gait: arm, start softly, wait for the end of the last cycle
     Play(Play),
+    Go(go::Go),
     /// Hold the pose, and the link until Ctrl-C (= stop)
     Pause(Pause),
     /// Go on from a pause
@@ -248,6 +253,7 @@ impl Robot {
             Action::Upload(arguments) => upload::run(access, arguments, output),
             Action::Arm(arguments) => motion::arm(access, arguments, output),
             Action::Play(arguments) => motion::play(access, arguments, output),
+            Action::Go(arguments) => go::go(access, arguments, output),
             Action::Pause(arguments) => motion::pause(access, arguments, output),
             Action::Resume => motion::resume(access, output),
             Action::Stop(arguments) => stop::stop(access, arguments, output),

@@ -10,6 +10,8 @@ mod emulated;
 mod experiment;
 mod figures;
 mod flash;
+#[cfg(target_os = "linux")]
+mod go;
 #[cfg(unix)]
 mod hc05;
 #[cfg(unix)]

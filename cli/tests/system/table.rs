@@ -70,7 +70,7 @@ impl Row {
     }
 }
 
-const ROWS: [Row; 53] = [
+const ROWS: [Row; 54] = [
     row("demo --swimmer good.toml -o out")
         .reads("good.toml")
         .writes("out")
@@ -144,6 +144,7 @@ const ROWS: [Row; 53] = [
     row("robot arm --port twin").lasts(),
     row("robot play --gait good.gait --cycles 1 --port twin").reads("good.gait"),
     row("robot play --gait circle:1 --port twin").lasts(),
+    row("robot go --to 9,9 --tank 1x1 --track twin --port twin"),
     row("robot pause --port twin"),
     row("robot resume --port twin"),
     row("robot stop --port twin"),

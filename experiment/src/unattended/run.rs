@@ -19,47 +19,9 @@ use forecast::{Planner, Step};
 
 use super::{Entry, Journal, MeasuredCycle, Plan, StartPose, StopRules, Trial};
 use crate::{
-    Controller, Course, CycleReport, Ending, Goal, Likeness, Monitor, Options, Pose,
-    Request as Drive,
+    Controller, CycleReport, Ending, Event, GaitOnRobot, Goal, Interruption, Likeness, Options,
+    Pose, Request as Drive, TankWalls, TrackedPlay,
 };
-
-/// Poses in a row that must lie outside the margin: one may be wrong.
-const POSES_OUTSIDE: u32 = 3;
-/// A cycle is evaluated when the poses are past its end by this much \[s\]: some arrive out of order.
-const LATE_POSES_S: f64 = 0.05;
-
-/// Gait as the robot plays it.
-#[derive(Debug, Clone)]
-pub struct GaitOnRobot {
-    /// Predicted course of one cycle in steady state.
-    pub course: Course,
-    /// Duration of a cycle \[s\].
-    pub period_s: f64,
-}
-
-/// Event of robot and cameras. Times are on the clock of the poses.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Event {
-    /// A tracked pose.
-    Pose(Pose),
-    /// The requested play began; its first set-point was at this time \[s\].
-    Began(f64),
-    /// The robot came to rest with straight joints \[s\].
-    AtRest(f64),
-    /// Something that ends the run.
-    Interrupted(Interruption),
-}
-
-/// Event that ends a run. Another run goes on.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Interruption {
-    /// The operator stopped.
-    Operator,
-    /// The robot stopped by itself, was e-stopped or refused, for this reason: battery, brown-out, e-stop.
-    Robot(String),
-    /// The link to the robot was lost, for this reason.
-    Link(String),
-}
 
 /// Request to the caller, executed in order.
 #[derive(Debug, Clone, PartialEq)]
@@ -125,44 +87,12 @@ enum Phase {
         until_s: f64,
     },
     Waiting,
-    Playing(Box<Playing>),
+    Playing(Box<TrackedPlay>),
     /// Stopping after an event that fails the trial.
     Stopping {
         reason: String,
     },
     Ended,
-}
-
-#[derive(Debug)]
-struct Playing {
-    monitor: Monitor,
-    gait: GaitOnRobot,
-    began_s: f64,
-    cycles: u32,
-    outside: u32,
-    reports: Vec<CycleReport>,
-}
-
-impl Playing {
-    /// Cycle under way.
-    fn cycle(&self) -> u32 {
-        u32::try_from(self.reports.len()).unwrap_or(u32::MAX)
-    }
-
-    fn cycle_began_s(&self) -> f64 {
-        self.began_s + f64::from(self.cycle()) * self.gait.period_s
-    }
-
-    /// Evaluates the cycle under way, and begins the next one.
-    fn next_cycle(&mut self) {
-        if let Some(report) = self.monitor.end() {
-            self.reports.push(report);
-        }
-        if self.cycle() < self.cycles {
-            let began = self.cycle_began_s();
-            self.monitor.begin(self.gait.course.clone(), began);
-        }
-    }
 }
 
 impl Run {
@@ -241,23 +171,7 @@ impl Run {
         self.last_seen_s = Some(pose.time_s.max(last));
         match &mut self.phase {
             Phase::Going(controller) => controller.pose(pose),
-            Phase::Playing(playing) => {
-                while playing.cycle() < playing.cycles
-                    && pose.time_s > playing.cycle_began_s() + playing.gait.period_s + LATE_POSES_S
-                {
-                    playing.next_cycle();
-                }
-                playing.monitor.pose(pose);
-                let (tank, margin) = self.planner.tank();
-                let time = (pose.time_s - playing.began_s).rem_euclid(playing.gait.period_s);
-                let is_outside = pose.time_s > playing.began_s
-                    && tank.is_some_and(|tank| {
-                        let model = self.planner.model();
-                        let course = &playing.gait.course;
-                        course.distance_to_wall(model, &tank, &pose.placed(), time) < margin
-                    });
-                playing.outside = if is_outside { playing.outside + 1 } else { 0 };
-            }
+            Phase::Playing(playing) => playing.pose(pose),
             Phase::Between
             | Phase::Settling { .. }
             | Phase::Waiting
@@ -278,22 +192,16 @@ impl Run {
                 else {
                     return;
                 };
-                let (tank, _) = self.planner.tank();
-                let mut monitor = Monitor::new(*self.planner.model(), tank);
-                for (name, other) in &self.gaits {
-                    if *name != trial.gait {
-                        monitor.know(name, other.course.clone());
-                    }
-                }
-                monitor.begin(gait.course.clone(), time_s);
-                self.phase = Phase::Playing(Box::new(Playing {
-                    monitor,
-                    gait: gait.clone(),
-                    began_s: time_s,
-                    cycles: self.plan.run_in + planned.cycles,
-                    outside: 0,
-                    reports: Vec::new(),
-                }));
+                let (tank, margin_m) = self.planner.tank();
+                let others = self.gaits.iter().filter(|(name, _)| **name != trial.gait);
+                self.phase = Phase::Playing(Box::new(TrackedPlay::new(
+                    self.planner.model(),
+                    tank.map(|tank| TankWalls { tank, margin_m }),
+                    gait.clone(),
+                    others.map(|(name, other)| (name.as_str(), &other.course)),
+                    time_s,
+                    self.plan.run_in + planned.cycles,
+                )));
             }
             _ => {}
         }
@@ -306,13 +214,7 @@ impl Run {
                 self.phase = Phase::Going(controller);
             }
             Phase::Playing(mut playing) => {
-                while playing.cycle() < playing.cycles {
-                    let before = playing.cycle();
-                    playing.next_cycle();
-                    if playing.cycle() == before {
-                        break;
-                    }
-                }
+                playing.at_rest();
                 self.evaluate(&playing);
             }
             Phase::Stopping { reason } => self.failed(&reason),
@@ -376,8 +278,8 @@ impl Run {
                 }
             }
             Phase::Playing(playing) => {
-                let departed = playing.reports.last().and_then(blocking);
-                let reason = if playing.outside >= POSES_OUTSIDE {
+                let departed = playing.reports().last().and_then(blocking);
+                let reason = if playing.is_outside() {
                     "the robot came nearer to a wall than the margin".to_owned()
                 } else if let Some(likeness) = departed {
                     format!("the robot departs from the prediction: {likeness}")
@@ -458,15 +360,15 @@ impl Run {
     }
 
     /// A play has ended: the trial is finished if all counted cycles were measured.
-    fn evaluate(&mut self, playing: &Playing) {
-        let departure = playing.reports.last().and_then(blocking);
+    fn evaluate(&mut self, playing: &TrackedPlay) {
+        let departure = playing.reports().last().and_then(blocking);
         if let Some(likeness) = departure {
             self.failed(&format!(
                 "the robot departs from the prediction: {likeness}"
             ));
             return;
         }
-        let counted = playing.reports.iter().skip(self.plan.run_in as usize);
+        let counted = playing.reports().iter().skip(self.plan.run_in as usize);
         let cycles: Option<Vec<MeasuredCycle>> = counted
             .map(|report| {
                 report.measured.map(|motion| MeasuredCycle {
@@ -477,8 +379,7 @@ impl Run {
                 })
             })
             .collect();
-        let is_whole = playing.cycle() >= playing.cycles;
-        let Some(cycles) = cycles.filter(|_| is_whole) else {
+        let Some(cycles) = cycles.filter(|_| playing.is_whole()) else {
             self.failed("a start or an end of a counted cycle was not seen");
             return;
         };
@@ -489,7 +390,7 @@ impl Run {
             return;
         };
         let departure = playing
-            .reports
+            .reports()
             .iter()
             .rev()
             .find_map(|report| report.departure.as_ref())
@@ -499,7 +400,7 @@ impl Run {
             trial: trial.number,
             attempt: attempts,
             track: track_name(&trial, attempts),
-            began_s: playing.began_s,
+            began_s: playing.began_s(),
             cycles,
             departure,
         }));

@@ -219,3 +219,27 @@ fn a_rigid_body_is_the_pose() {
     let received_s = frames.last().unwrap().received_s;
     assert!(filter.take_pose(received_s).is_some() && filter.take_pose(received_s).is_none());
 }
+
+/// Points without names: the caller knows roughly where the robot heads, and either order of the points comes out right.
+#[test]
+fn a_heading_settles_the_front_of_points_without_names() {
+    let poses = swum(600, 6.0, 5);
+    let mut frames = filmed(&poses, Faults::NONE, 5);
+    for marker in frames.iter_mut().flat_map(|frame| &mut frame.markers) {
+        marker.name = None;
+    }
+    for opposite in [false, true] {
+        let mut filter = filter(0.08);
+        for (frame, truth) in frames.iter().zip(&poses) {
+            filter.push(frame);
+            if filter.is_found() && !filter.knows_front() {
+                let turn = if opposite { std::f64::consts::PI } else { 0.0 };
+                assert!(filter.face(truth.theta + turn + 1.0));
+            }
+        }
+        assert!(filter.knows_front());
+        let turn = if opposite { std::f64::consts::PI } else { 0.0 };
+        let last = poses[599];
+        assert_at(filter.pose(), &Pose::new(last.x, last.y, last.theta + turn));
+    }
+}

@@ -4,7 +4,7 @@
 use std::time::Duration;
 
 use crate::virtual_lab::{Lab, Notice, Truth, model, planner, servos};
-use experiment::{Arrivals, Course, Pose, match_clocks};
+use experiment::{CameraDelay, Course, Delays, Pose, match_clocks};
 use forecast::Kind;
 use host_link::session::ClockSamples;
 use link_protocol::Pong;
@@ -53,12 +53,12 @@ fn clocks_match_within_20_ms_on_all_seeds() {
             seed,
         );
         lab.start(planner.gait(&step.member), step);
-        let (mut poses, mut began, mut arrivals) = (Vec::new(), None, Arrivals::default());
+        let (mut poses, mut began, mut delays) = (Vec::new(), None, Delays::default());
         while lab.now < 9.0 {
             lab.advance();
             for pose in lab.arrived() {
                 let time_s = camera(pose.time_s);
-                arrivals.push(time_s, robot_of_host(lab.now));
+                delays.push(time_s, robot_of_host(lab.now), 0.0);
                 poses.push(Pose { time_s, ..pose });
             }
             for notice in std::mem::take(&mut lab.notices) {
@@ -67,7 +67,7 @@ fn clocks_match_within_20_ms_on_all_seeds() {
                 }
             }
         }
-        let bounds = arrivals.bounds(0.3, link.uncertainty).unwrap();
+        let bounds = delays.bounds(0.3, link.uncertainty).unwrap();
         let found = match_clocks(&poses, &course, began.unwrap(), bounds)
             .unwrap_or_else(|| panic!("seed {seed}, {kind:?}: no match within {bounds:?}"));
         let truth = robot(5.0) - camera(5.0);
@@ -100,4 +100,49 @@ fn a_robot_at_rest_matches_nothing() {
         poses.extend(lab.arrived());
     }
     assert_eq!(match_clocks(&poses, &course, 1.0, [-0.2, 0.2]), None);
+}
+
+/// Frames that state no latency date all poses late. Three plays show by how much.
+#[test]
+fn the_delay_of_the_cameras_is_measured_play_by_play() {
+    let planner = planner();
+    for seed in 0..8 {
+        let mut rng = ChaCha8Rng::seed_from_u64(100 + seed);
+        let late_s: f64 = rng.random_range(0.0..0.2);
+        let start = swimmer_model::Pose::new(0.0, 0.0, 1.0);
+        let mut lab = Lab::new(Truth::hard(seed), start, seed);
+        let mut delay = CameraDelay::default();
+        for kind in Kind::ALL {
+            let step = planner.step(planner.member(kind, 1.0), 1);
+            let table = planner.checked_table(&step).unwrap();
+            let course = Course::of_play(&model(), &table, &servos(), Vector2::zeros());
+            lab.start(planner.gait(&step.member), step);
+            let until = lab.now + course.duration_s() + 4.0;
+            while lab.now < until {
+                lab.advance();
+                for pose in lab.arrived() {
+                    let time_s = pose.time_s + late_s;
+                    delay.dated(&Pose { time_s, ..pose });
+                }
+                for notice in std::mem::take(&mut lab.notices) {
+                    if let Notice::Began(host) = notice {
+                        let link_error: f64 = rng.random_range(-0.01..0.01);
+                        delay.began(course.clone(), host + link_error);
+                    }
+                }
+            }
+            let error = delay.delay_s().unwrap_or(f64::NAN) - late_s;
+            println!("seed {seed} after {kind:?}: {:.1} ms off", error * 1e3);
+            assert!(error.abs() <= 0.02, "seed {seed}, {kind:?}: {error} s off");
+        }
+        let pose = Pose {
+            time_s: 7.0,
+            x_m: 0.0,
+            y_m: 0.0,
+            heading_rad: 0.0,
+            sigma_position_m: 1e-4,
+            sigma_heading_rad: 1e-3,
+        };
+        assert!((delay.dated(&pose).time_s - 7.0 + late_s).abs() <= 0.02);
+    }
 }

@@ -4,10 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::virtual_lab::{model, planner, servos};
 use experiment::unattended::{
-    Entry, Event, GaitOnRobot, Interruption, Journal, Measure, MeasuredCycle, Plan, PlannedGait,
-    Request, Run, RunEnding, StartPose, StopRules, compare, randomised,
+    Entry, Journal, Measure, MeasuredCycle, Plan, PlannedGait, Request, Run, RunEnding, StartPose,
+    StopRules, compare, randomised,
 };
-use experiment::{Course, Pose};
+use experiment::{Course, Event, GaitOnRobot, Interruption, Pose};
 use forecast::playlist::PlaylistTable;
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};

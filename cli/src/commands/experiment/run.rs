@@ -4,18 +4,17 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::path::PathBuf;
 
-use experiment::Course;
-use experiment::unattended::{Entry, Event, GaitOnRobot, Journal, Plan, Request, Run, RunEnding};
-use forecast::{Planner, Played, Servos};
+use experiment::unattended::{Entry, Journal, Plan, Request, Run, RunEnding};
+use experiment::{Course, Event, GaitOnRobot};
+use forecast::{Planner, Played, PlaylistTable, Servos};
 use gait_player::GaitTable;
 use link_protocol::MAX_KNOTS;
-use pose_source::SourceName;
 use serde::Serialize;
 
 use super::ExperimentPaths;
 use super::folder::{DRIVE, Folder, JournalFile};
 use crate::commands::plan::family_in;
-use crate::commands::robot::{Access, Bench, table_of};
+use crate::commands::robot::{Access, Bench, Tracked, table_of};
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
 use crate::output::Output;
@@ -33,9 +32,8 @@ pub(crate) struct RunPlan {
     paths: ExperimentPaths,
     #[command(flatten)]
     access: Access,
-    /// Where the cameras' frames come from: natnet[:HOST[,LOCAL]], tcp:HOST:PORT, -, or twin with a virtual robot
-    #[arg(long, value_name = "SOURCE")]
-    track: SourceName,
+    #[command(flatten)]
+    tracked: Tracked,
 }
 
 #[derive(Debug, Serialize)]
@@ -72,8 +70,10 @@ impl RunPlan {
         let _ = std::fs::remove_file(&log_path);
         let access = self.access.logging_to(log_path);
         let seed = folder.plan.seed.wrapping_add(number);
-        let mut bench = Bench::open(&access, &self.track, &folder.swimmer, seed, interrupt)?;
-        let servos = bench.servos(&folder.swimmer)?;
+        let (command, cameras) = ("swimmer experiment run", self.tracked.cameras());
+        let swimmer = &folder.swimmer;
+        let mut bench = Bench::open(&access, command, cameras, swimmer, seed, interrupt)?;
+        let servos = *bench.servos();
         let (gaits, playable) = gaits(&folder, &servos)?;
         let planner = planner(&folder, servos)?;
         file.append(&Entry::Opened {
@@ -156,18 +156,19 @@ impl Executor<'_> {
             Request::Drive(step) => {
                 let table = self.planner.checked_table(&step);
                 let table = table.map_err(|error| Failure::tried(&error))?;
-                let name = step.member.word(false);
-                return Ok(self
-                    .bench
-                    .play(name, &table.table, table.cycles, table.period_us));
+                return Ok(self.bench.play(step.member.word(false), &table));
             }
             Request::Play { gait, cycles } => {
                 let Some(playable) = self.playable.get(&gait) else {
                     return Err(Failure::BadInput(format!("the plan has no gait `{gait}`")));
                 };
-                return Ok(self
-                    .bench
-                    .play(&gait, &playable.table, cycles, playable.period_us));
+                let table = PlaylistTable {
+                    table: playable.table.clone(),
+                    cycles,
+                    period_us: playable.period_us,
+                    step: 0,
+                };
+                return Ok(self.bench.play(&gait, &table));
             }
         }
         Ok(None)

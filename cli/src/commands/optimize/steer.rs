@@ -38,6 +38,15 @@ fn shape(text: &str) -> Result<[f64; 2], String> {
 }
 
 impl Steer {
+    /// Playable gaits that join at the straight shape.
+    pub(crate) fn straight() -> Self {
+        Self {
+            max_rate: Vec::new(),
+            bounds: WholeBounds::for_playing(),
+            shape: Some([0.0; 2]),
+        }
+    }
+
     /// The rates of the servos \[rad/s\].
     ///
     /// # Errors

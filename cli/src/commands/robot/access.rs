@@ -11,11 +11,11 @@ use host_link::{LinkError, Port as _, Robot};
 use link_protocol::{Flags, Joint, Telemetry};
 use swimmer_files::SwimmerFile;
 
-use super::bench::{Frames, watched};
 use super::find::{self, GreetingResult};
 use super::key::KeyFile;
 use super::port::{AnyPort, BAUD, Fresh, Means, NotOpen, Opened, Pace, fresh, open};
 use super::port_owner::{Ask, HeldBy, PortHolder, Relayed};
+use super::tank_cameras::TankCameras;
 use crate::arguments::load_swimmer;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
@@ -84,6 +84,11 @@ impl Access {
     /// `true` if a port was named.
     pub(super) fn names_a_port(&self) -> bool {
         !self.port.is_empty()
+    }
+
+    /// Returns `true` if the one port is a fresh virtual robot.
+    pub(super) fn is_fresh(&self) -> bool {
+        matches!(self.port.as_slice(), [name] if fresh(name).is_some())
     }
 
     /// `true` if every frame is to be logged.
@@ -193,12 +198,12 @@ impl Access {
     ///
     /// # Errors
     /// [`Failure::BadInput`] if the port is another, and as [`connect`](Self::connect).
-    pub(super) fn connect_watched(
+    pub(super) fn connect_filmed(
         &self,
         command: &str,
         file: &SwimmerFile,
         seed: u64,
-        frames: &Frames,
+        cameras: &TankCameras,
     ) -> Outcome<RobotConnection> {
         let robot = match self.port.as_slice() {
             [name] => fresh(name).map(|robot| (name, robot)),
@@ -213,16 +218,12 @@ impl Access {
         let named = swimmer.map(load_swimmer).transpose()?;
         let truth = named.as_ref().unwrap_or(file);
         let recorder = self.recorder()?;
+        let line = carrier.line(truth, seed, &self.board)?;
         let opened = Opened {
-            port: watched(carrier.line(truth, seed, &self.board)?, frames),
+            port: Box::new(line.map_device(|robot| cameras.film(robot))),
             name: name.clone(),
         };
         self.greeted(opened, self.session()?, recorder, command)
-    }
-
-    /// Returns true if the one port is a fresh virtual robot.
-    pub(super) fn names_a_virtual_robot(&self) -> bool {
-        matches!(self.port.as_slice(), [name] if fresh(name).is_some())
     }
 
     fn recorder(&self) -> Outcome<Option<Recorder>> {
@@ -433,6 +434,11 @@ impl RobotConnection {
             silence: None,
             halt: Some(Box::new(move || halts.take())),
         });
+    }
+
+    /// Returns `true` if another process has requested a stop since the port was opened.
+    pub(super) fn was_stopped(&self) -> bool {
+        self.holder.halts().was_set()
     }
 
     /// Name of the port.

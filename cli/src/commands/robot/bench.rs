@@ -1,88 +1,47 @@
-//! Robot and cameras of an experiment, as one struct: a fresh virtual robot in virtual time, or a robot behind a port with a source
-//! of frames.
+//! Robot and cameras as one source of events: a fresh virtual robot in virtual time, or a robot behind a port with a source of frames.
+//! Every command that tracks the robot while it swims runs on this loop.
 
-use std::io;
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex};
+use std::path::Path;
 use std::time::Duration;
 
-use experiment::unattended::{Event, Interruption};
-use experiment::{Arrivals, Pose};
-use gait_player::GaitTable;
-use host_link::{LinkError, Port};
-use link_protocol::{StateName, StopCause, Telemetry};
-use pose_source::{Frame, Received, Recorder, Settings, SourceName, Stream, twin_frame};
+use experiment::{Course, Event, Interruption};
+use forecast::{PlaylistTable, Servos};
+use host_link::LinkError;
+use link_protocol::{Checked, StateName, StopCause, Telemetry};
+use pose_source::SourceName;
 use swimmer_files::SwimmerFile;
+use swimmer_model::Model;
+use twin::is_configured_as;
 
 use super::access::{Access, RobotConnection};
 use super::motion::MAY_JUMP;
 use super::outputs::cause;
-use super::port::{AnyPort, Pace};
-use super::preflight::Player;
-use super::rest::nothing_under_way;
+use super::port::Pace;
+use super::rest::{is_off, nothing_under_way, wait_for_rest};
+use super::tank_cameras::TankCameras;
+use super::tracking::{CamerasOf, Tracking, port_s};
 use super::upload::send_table;
 use crate::failure::{Failure, Outcome};
-use crate::interrupt::{Interrupt, locked};
+use crate::interrupt::Interrupt;
 use crate::output::aside;
-use crate::virtual_robot::VirtualLine;
 
-/// Standard deviation of a coordinate of a point \[m\]: good cameras.
-const POINT_SIGMA_M: f64 = 3e-4;
-/// Distance of the points on which a rigid body's heading rests, if it is not known \[m\].
-const BODY_SPAN_M: f64 = 0.07;
 /// A robot that does not start a play within this time is given up \[s\].
 const LONGEST_START_S: f64 = 10.0;
 
-/// Frames of a virtual robot's cameras that nobody has taken yet.
-pub(super) type Frames = Arc<Mutex<Vec<Frame>>>;
-
-/// A line to a virtual robot that keeps the frames of its cameras.
-struct Watched {
-    port: VirtualLine,
-    frames: Frames,
+/// Motion of the robot, as requested.
+enum Motion {
+    Resting,
+    Playing(Play),
+    /// Stopping since this time on the robot's clock \[µs\].
+    Stopping(u64),
 }
 
-impl Watched {
-    fn take_frames(&mut self) {
-        let world = self.port.device_mut().world_mut();
-        let taken = world.take_frames();
-        locked(&self.frames).extend(taken.map(|(stamp, seen)| twin_frame(&seen, stamp)));
-    }
-}
-
-impl Port for Watched {
-    fn read(&mut self, buf: &mut [u8], timeout: Duration) -> io::Result<usize> {
-        let count = self.port.read(buf, timeout);
-        self.take_frames();
-        count
-    }
-
-    fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.port.write(bytes)
-    }
-
-    fn now(&self) -> Duration {
-        self.port.now()
-    }
-}
-
-/// A port to a virtual robot whose cameras are on.
-pub(super) fn watched(mut port: VirtualLine, frames: &Frames) -> AnyPort {
-    port.device_mut().world_mut().watch();
-    Box::new(Watched {
-        port,
-        frames: Arc::clone(frames),
-    })
-}
-
-enum Cameras {
-    Virtual(Frames),
-    Live { stream: Stream, arrivals: Arrivals },
-}
-
-/// Play that was requested.
+/// Play under way.
+#[derive(Clone, Copy)]
 struct Play {
-    period_s: f64,
+    /// The robot's clock after the request \[µs\]: telemetry from before is of another play.
+    since_us: u64,
+    period_us: u32,
     requested_s: f64,
     has_begun: bool,
 }
@@ -90,213 +49,203 @@ struct Play {
 /// Robot and cameras. All times are on the clock of the port.
 pub(crate) struct Bench {
     line: RobotConnection,
-    cameras: Cameras,
+    tracking: Tracking,
     interrupt: Interrupt,
-    play: Option<Play>,
-    is_stopping: bool,
-    has_interrupted: bool,
-    track: Option<(PathBuf, Recorder)>,
+    model: Model<f64>,
+    servos: Servos,
+    motion: Motion,
+    /// Course of a cycle of the play under way, until the play begins.
+    course: Option<Course>,
+    operator_reported: bool,
 }
 
 impl Bench {
-    /// Connects. `seed` is that of a fresh virtual robot, in whose tank `file` is the truth.
+    /// Connects, and waits until the cameras show the robot. `seed` is that of a fresh virtual robot, in whose tank the port's
+    /// swimmer, otherwise `file`, is the truth. Other processes see `command` as the holder of the port.
     ///
     /// # Errors
-    /// As the connection, and the source of frames.
+    /// As the connection and the source of frames; [`Failure::Tried`] if a robot is configured as another swimmer, if a play is
+    /// under way, or if the cameras do not show the robot.
     pub(crate) fn open(
         access: &Access,
-        track: &SourceName,
+        command: &str,
+        cameras: CamerasOf<'_>,
         file: &SwimmerFile,
         seed: u64,
         interrupt: Interrupt,
     ) -> Outcome<Self> {
-        let command = "swimmer experiment run";
-        let (mut line, cameras) = if *track == SourceName::Twin {
-            let frames = Frames::default();
-            let line = access.connect_watched(command, file, seed, &frames)?;
-            (line, Cameras::Virtual(frames))
+        cameras.check(access)?;
+        let model = crate::arguments::model(file)?;
+        let tank = TankCameras::default();
+        let mut tracking = cameras.open(tank.clone(), &file.swimmer.links)?;
+        let is_virtual = *cameras.source == SourceName::Twin;
+        let mut line = if is_virtual {
+            access.connect_filmed(command, file, seed, &tank)?
         } else {
-            if access.names_a_virtual_robot() {
-                return Err(Failure::BadInput(format!(
-                    "{track} does not see the virtual robot; with --port twin use --track twin"
-                )));
-            }
-            let stream = Stream::open(track, &Settings::default())?;
-            let cameras = Cameras::Live {
-                stream,
-                arrivals: Arrivals::default(),
-            };
-            (access.connect(command, Pace::RealTime)?, cameras)
+            access.connect(command, Pace::RealTime)?
         };
         line.stops_on(&interrupt);
         nothing_under_way(&line.robot.status()?)?;
+        let configuration = line.robot.configuration()?;
+        // The swimmer of a virtual tank may be another on purpose.
+        if !is_virtual && !is_configured_as(&configuration, &file.swimmer) {
+            return Err(Failure::Tried(format!(
+                "the robot is configured as another swimmer than `{}`: name its file, or send this one with `swimmer robot configure \
+                 --swimmer FILE`",
+                file.name
+            )));
+        }
+        let servo = file.servo.unwrap_or_default();
+        let servos = Servos::on_robot(servo, line.robot.info(), &configuration);
+        tracking.wait_for_robot(&mut line, &interrupt)?;
         aside(MAY_JUMP);
         Ok(Self {
             line,
-            cameras,
+            tracking,
             interrupt,
-            play: None,
-            is_stopping: false,
-            has_interrupted: false,
-            track: None,
+            model,
+            servos,
+            motion: Motion::Resting,
+            course: None,
+            operator_reported: false,
         })
     }
 
-    /// Servos of the robot, described by a swimmer file.
-    ///
-    /// # Errors
-    /// The link's.
-    pub(crate) fn servos(&mut self, file: &SwimmerFile) -> Outcome<forecast::Servos> {
-        let configuration = self.line.robot.configuration()?;
-        let hello = self.line.robot.info();
-        Ok(Player::of_robot(hello, &configuration, Some(file)).servos)
+    /// Servos of the robot, described by the swimmer file.
+    pub(crate) fn servos(&self) -> &Servos {
+        &self.servos
     }
 
     /// Present time \[s\].
     pub(crate) fn now_s(&self) -> f64 {
-        self.line.robot.port().now().as_secs_f64()
+        port_s(&self.line)
     }
 
-    /// Waits for 20 ms, and returns what happened.
+    /// Delay of the cameras that they do not state \[s\]; `None` until a play has shown it.
+    pub(crate) fn camera_delay_s(&self) -> Option<f64> {
+        self.tracking.delay_s()
+    }
+
+    /// Waits for 20 ms, and returns the events.
     ///
     /// # Errors
     /// If a track cannot be written.
     pub(crate) fn advance(&mut self) -> Outcome<Vec<Event>> {
         let news = self.line.beat();
-        let mut events = self.poses()?;
-        if self.interrupt.requested() && !self.has_interrupted {
-            self.has_interrupted = true;
+        let now_s = self.now_s();
+        let poses = self.tracking.poses(now_s)?;
+        let mut events: Vec<Event> = poses.into_iter().map(Event::Pose).collect();
+        if self.is_stopped_by_operator() && !self.operator_reported {
+            self.operator_reported = true;
             events.push(Event::Interrupted(Interruption::Operator));
         }
         match news {
-            Ok(Some(telemetry)) => events.extend(self.telemetry(&telemetry)),
+            Ok(Some(telemetry)) => self.follow(&telemetry, &mut events),
             Ok(None) => {}
             Err(error) => events.push(interruption(&error)),
         }
-        let now = self.now_s();
-        if let Some(play) = &self.play
+        if let Motion::Playing(play) = self.motion
             && !play.has_begun
-            && now - play.requested_s > LONGEST_START_S
+            && now_s - play.requested_s > LONGEST_START_S
         {
-            self.play = None;
+            self.motion = Motion::Resting;
             let reason = format!("it did not start a play within {LONGEST_START_S} s");
             events.push(Event::Interrupted(Interruption::Robot(reason)));
         }
         Ok(events)
     }
 
-    fn poses(&mut self) -> Outcome<Vec<Event>> {
-        let now = self.now_s();
-        let mut timed: Vec<(f64, Frame)> = Vec::new();
-        let mut ended = None;
-        match &mut self.cameras {
-            Cameras::Virtual(frames) => {
-                let frames = std::mem::take(&mut *locked(frames));
-                timed.extend(frames.into_iter().map(|frame| (frame.stamp_s, frame)));
-            }
-            Cameras::Live { stream, arrivals } => loop {
-                match stream.next(Duration::ZERO) {
-                    Received::Frame(frame) => {
-                        let exposed = frame.stamp_s + frame.latency_s.unwrap_or(0.0);
-                        arrivals.push(exposed, now);
-                        let offset = arrivals.bounds(0.0, 0.0).map_or(0.0, |bounds| bounds[1]);
-                        timed.push((frame.stamp_s + offset, frame));
-                    }
-                    Received::Nothing => break,
-                    Received::Ended(outcome) => {
-                        ended = Some(outcome);
-                        break;
-                    }
-                }
-            },
-        }
-        let mut events = Vec::with_capacity(timed.len());
-        for (time_s, frame) in timed {
-            if let Some((_, recorder)) = &mut self.track {
-                recorder
-                    .write(&frame)
-                    .map_err(|error| Failure::tried(&error))?;
-            }
-            events.extend(pose(&frame, time_s).map(Event::Pose));
-        }
-        if let Some(Err(error)) = ended {
-            aside(&format!("warning: {error}"));
-        }
-        Ok(events)
+    /// Returns `true` if the operator stops, here or by another process.
+    fn is_stopped_by_operator(&self) -> bool {
+        self.interrupt.requested() || self.line.was_stopped()
     }
 
-    fn telemetry(&mut self, telemetry: &Telemetry) -> Option<Event> {
-        let is_off = matches!(telemetry.state, StateName::Stopped | StateName::EStopped);
-        if self.is_stopping && is_off {
-            self.is_stopping = false;
-            self.play = None;
-            return Some(match telemetry.cause {
-                StopCause::Requested | StopCause::Finished => Event::AtRest(self.now_s()),
-                other => stopped_by_itself(other),
-            });
-        }
-        let now = self.now_s();
-        let robot_s = telemetry.robot_us as f64 * 1e-6;
-        let clock = self.line.robot.clock();
-        let play = self.play.as_mut()?;
-        match telemetry.state {
-            StateName::Playing if !play.has_begun => {
-                play.has_begun = true;
-                let here_s = clock.map_or(now, |clock| clock.host_time(robot_s));
-                let cycles = f64::from(telemetry.cycle) + f64::from(telemetry.phase) / 65_536.0;
-                Some(Event::Began(here_s - cycles * play.period_s))
+    /// Follows the robot's reports.
+    fn follow(&mut self, telemetry: &Telemetry, events: &mut Vec<Event>) {
+        let now_s = self.now_s();
+        match self.motion {
+            Motion::Playing(mut play) if telemetry.robot_us > play.since_us => {
+                let is_off = is_off(telemetry.state);
+                let has_finished = is_off && telemetry.cause == StopCause::Finished;
+                if !play.has_begun && (telemetry.state == StateName::Playing || has_finished) {
+                    play.has_begun = true;
+                    let began_s = self.began_s(telemetry, play.period_us);
+                    if let Some(course) = self.course.take() {
+                        self.tracking.play_began(course, began_s);
+                    }
+                    events.push(Event::Began(began_s));
+                }
+                self.motion = Motion::Playing(play);
+                if is_off {
+                    self.motion = Motion::Resting;
+                    events.push(if has_finished {
+                        Event::AtRest(now_s)
+                    } else {
+                        self.tracking.play_interrupted();
+                        stopped_by_itself(telemetry.cause)
+                    });
+                }
             }
-            _ if is_off && play.has_begun => {
-                self.play = None;
-                Some(match telemetry.cause {
-                    StopCause::Finished => Event::AtRest(now),
-                    other => stopped_by_itself(other),
-                })
-            }
-            _ if is_off
-                && !matches!(
-                    telemetry.cause,
-                    StopCause::Finished | StopCause::Requested | StopCause::Boot
-                ) =>
+            Motion::Stopping(since_us)
+                if telemetry.robot_us > since_us && is_off(telemetry.state) =>
             {
-                self.play = None;
-                Some(stopped_by_itself(telemetry.cause))
+                self.motion = Motion::Resting;
+                events.push(match telemetry.cause {
+                    StopCause::Requested | StopCause::Finished => Event::AtRest(now_s),
+                    other => stopped_by_itself(other),
+                });
             }
-            _ => None,
+            _ => {}
         }
+    }
+
+    /// Time of the first cycle's first set-point on the port's clock \[s\].
+    fn began_s(&self, telemetry: &Telemetry, period_us: u32) -> f64 {
+        let now_s = self.now_s();
+        let cycles = f64::from(telemetry.cycle) + f64::from(telemetry.phase) / 65_536.0;
+        let into_s = cycles * f64::from(period_us) / 1e6;
+        let fit = self.line.robot.clock();
+        let reported_s = fit.map_or(now_s, |fit| fit.host_time(telemetry.robot_us as f64 / 1e6));
+        reported_s.min(now_s) - into_s
     }
 
     /// Sends a table unless the robot holds it, and plays it. Returns an event if the robot refuses or is lost.
-    pub(crate) fn play(
-        &mut self,
-        name: &str,
-        table: &GaitTable,
-        cycles: u32,
-        period_us: u32,
-    ) -> Option<Event> {
-        match self.begin(name, table, cycles, period_us) {
+    pub(crate) fn play(&mut self, name: &str, table: &PlaylistTable) -> Option<Event> {
+        match self.begin(name, table) {
             Ok(()) => None,
-            Err(Failure::Tried(_)) if self.interrupt.requested() => None,
+            // The next `advance` reports the operator.
+            Err(_) if self.is_stopped_by_operator() => None,
             Err(failure) => {
-                self.play = None;
+                self.motion = Motion::Resting;
                 let _ = self.line.robot.stop();
                 Some(Event::Interrupted(Interruption::Robot(failure.to_string())))
             }
         }
     }
 
-    fn begin(&mut self, name: &str, table: &GaitTable, cycles: u32, period_us: u32) -> Outcome {
-        let mut checked = self.line.robot.held()?;
-        if checked.table_crc32 != table.crc32() {
-            send_table(&mut self.line, name, table, &self.interrupt)?;
-            checked.table_crc32 = table.crc32();
+    fn begin(&mut self, name: &str, table: &PlaylistTable) -> Outcome {
+        let held = self.line.robot.held()?;
+        let table_crc32 = table.table.crc32();
+        if held.table_crc32 != table_crc32 {
+            send_table(&mut self.line, name, &table.table, &self.interrupt)?;
+        }
+        if self.is_stopped_by_operator() {
+            return Ok(());
         }
         let robot = &mut self.line.robot;
+        let checked = Checked {
+            table_crc32,
+            ..held
+        };
         robot.arm(false)?;
-        let period = Duration::from_micros(period_us.into());
-        robot.play_checked(cycles, period, false, checked)?;
-        self.play = Some(Play {
-            period_s: period.as_secs_f64(),
+        let period = Duration::from_micros(table.period_us.into());
+        robot.play_checked(table.cycles, period, false, checked)?;
+        let since_us = robot.status()?.robot_us;
+        let course = Course::of_cycle(&self.model, &table.table, table.period_us, &self.servos);
+        self.course = Some(course);
+        self.motion = Motion::Playing(Play {
+            since_us,
+            period_us: table.period_us,
             requested_s: self.now_s(),
             has_begun: false,
         });
@@ -305,12 +254,18 @@ impl Bench {
 
     /// Stops the robot. Returns an event if the link fails.
     pub(crate) fn stop(&mut self) -> Option<Event> {
-        self.is_stopping = true;
-        self.line
+        self.tracking.play_interrupted();
+        let stopped = self
+            .line
             .robot
             .stop()
-            .err()
-            .map(|error| interruption(&error))
+            .and_then(|_| self.line.robot.status());
+        match stopped {
+            // The state of this moment counts as well: a robot at rest may send no other.
+            Ok(status) => self.motion = Motion::Stopping(status.robot_us.saturating_sub(1)),
+            Err(error) => return Some(interruption(&error)),
+        }
+        None
     }
 
     /// Records the frames from now on into this CSV file, in place of one of the same name.
@@ -318,9 +273,7 @@ impl Bench {
     /// # Errors
     /// If it cannot be made.
     pub(crate) fn begin_track(&mut self, path: &Path) -> Outcome {
-        let recorder = Recorder::create(path).map_err(|error| Failure::tried(&error))?;
-        self.track = recorder.map(|recorder| (path.to_path_buf(), recorder));
-        Ok(())
+        self.tracking.begin_track(path)
     }
 
     /// Ends the track, and waits until it is on the disk.
@@ -328,24 +281,19 @@ impl Bench {
     /// # Errors
     /// If it cannot be written.
     pub(crate) fn end_track(&mut self) -> Outcome {
-        let Some((path, recorder)) = self.track.take() else {
-            return Ok(());
-        };
-        recorder.finish().map_err(|error| Failure::tried(&error))?;
-        let synced = std::fs::File::open(&path).and_then(|file| file.sync_all());
-        synced.map_err(|error| {
-            Failure::Tried(format!(
-                "cannot write {}: {error}; is the disk full?",
-                path.display()
-            ))
-        })
+        self.tracking.end_track()
     }
 
-    /// Lets the robot go, and closes the log.
+    /// Lets the robot go once it is at rest, and closes the log.
     ///
     /// # Errors
     /// If the log cannot be written.
-    pub(crate) fn close(self) -> Outcome {
+    pub(crate) fn close(mut self) -> Outcome {
+        if !matches!(self.motion, Motion::Resting) {
+            // As far as the link still allows; the robot stops by itself otherwise.
+            let stopped = self.line.robot.stop();
+            let _ = stopped.and_then(|_| wait_for_rest(&mut self.line.robot));
+        }
         self.line.close()
     }
 }
@@ -359,37 +307,5 @@ fn interruption(error: &LinkError) -> Event {
     Event::Interrupted(match error {
         LinkError::Refused { .. } | LinkError::StoppedEarly { .. } => Interruption::Robot(text),
         _ => Interruption::Link(text),
-    })
-}
-
-/// Pose of the middle link by the only rigid body of a frame, or by the points `Front` and `Back`.
-fn pose(frame: &Frame, time_s: f64) -> Option<Pose> {
-    let [front, back] = pose_source::TWIN_REFLECTORS.map(|name| frame.marker(name));
-    let (x_m, y_m, heading_rad, span) = match (front, back, frame.bodies.as_slice()) {
-        (Some(front), Some(back), _) => {
-            let (dx, dy) = (front.x_m - back.x_m, front.y_m - back.y_m);
-            (
-                f64::midpoint(front.x_m, back.x_m),
-                f64::midpoint(front.y_m, back.y_m),
-                dy.atan2(dx),
-                dx.hypot(dy),
-            )
-        }
-        (_, _, [body]) => (
-            body.position[0],
-            body.position[1],
-            body.heading_rad(),
-            BODY_SPAN_M,
-        ),
-        _ => return None,
-    };
-    let root = std::f64::consts::SQRT_2;
-    (span > 0.0).then(|| Pose {
-        time_s,
-        x_m,
-        y_m,
-        heading_rad,
-        sigma_position_m: POINT_SIGMA_M / root,
-        sigma_heading_rad: POINT_SIGMA_M * root / span,
     })
 }

@@ -78,6 +78,7 @@ pub(super) fn wait_for_rest(robot: &mut Robot<AnyPort>) -> Result<StateName, Lin
     Ok(robot.status()?.state)
 }
 
-fn is_off(state: StateName) -> bool {
+/// Returns `true` if the pulses are off.
+pub(super) fn is_off(state: StateName) -> bool {
     matches!(state, StateName::Stopped | StateName::EStopped)
 }

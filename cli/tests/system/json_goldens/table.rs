@@ -195,6 +195,9 @@ pub(super) const SESSIONS: &[Session] = &[
         done("map", "sweep map small -o map.svg"),
         done("submit", "sweep submit slurm small --shards 2"),
     ]),
+    with("../experiment/tests/straight", "live", &[
+        done("go", "robot go --to 0.02,0.05 --within 10mm,1deg --tank 1.2x1.2 --gaits . --port twin --track twin"),
+    ]),
     bare("robot", &[
         done("info", "robot info --port twin"),
         done("status", "robot status --port twin"),

@@ -1,7 +1,7 @@
 //! Stop that another process has requested, visible to a thread that waits for something else.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 
 use host_link::robot::Halt;
 
@@ -10,7 +10,11 @@ const ESTOP: u8 = 2;
 
 /// Most severe stop that was requested and is not taken yet.
 #[derive(Debug, Clone, Default)]
-pub(in super::super) struct HaltSignal(Arc<AtomicU8>);
+pub(in super::super) struct HaltSignal {
+    pending: Arc<AtomicU8>,
+    /// A stop was requested, taken or not.
+    ever: Arc<AtomicBool>,
+}
 
 impl HaltSignal {
     /// Requests a stop.
@@ -20,12 +24,18 @@ impl HaltSignal {
             Halt::Stop => STOP,
             Halt::EStop => ESTOP,
         };
-        self.0.fetch_max(level, Ordering::SeqCst);
+        self.ever.store(true, Ordering::SeqCst);
+        self.pending.fetch_max(level, Ordering::SeqCst);
+    }
+
+    /// Returns `true` if a stop was ever requested, also one that was taken.
+    pub(in super::super) fn was_set(&self) -> bool {
+        self.ever.load(Ordering::SeqCst)
     }
 
     /// Takes it.
     pub(in super::super) fn take(&self) -> Option<Halt> {
-        match self.0.swap(0, Ordering::SeqCst) {
+        match self.pending.swap(0, Ordering::SeqCst) {
             0 => None,
             STOP => Some(Halt::Stop),
             _ => Some(Halt::EStop),

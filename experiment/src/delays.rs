@@ -9,7 +9,7 @@ const MOST: usize = 1024;
 
 /// Least delay between stamp and reception over a sliding window, with a monotonic queue.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Delays {
+pub struct Delays {
     /// Reception and delay, both growing.
     queue: VecDeque<Delay>,
     latency_s: f64,
@@ -23,7 +23,7 @@ struct Delay {
 
 impl Delays {
     /// Adds a frame; `latency_s` is the delay between exposure and transmission.
-    pub(super) fn push(&mut self, stamp_s: f64, received_s: f64, latency_s: f64) {
+    pub fn push(&mut self, stamp_s: f64, received_s: f64, latency_s: f64) {
         let delay_s = received_s - stamp_s;
         self.latency_s = latency_s;
         while self
@@ -48,9 +48,16 @@ impl Delays {
     }
 
     /// The camera clock at a time on the host clock; `None` before the first frame.
-    pub(super) fn camera_time(&self, host_s: f64) -> Option<f64> {
+    pub fn camera_time(&self, host_s: f64) -> Option<f64> {
         let least = self.queue.front()?;
         Some(host_s - (least.delay_s - self.latency_s))
+    }
+
+    /// Smallest and largest difference \[s\] of host clock and camera clock, if the quickest frame was under way for at most
+    /// `longest_s`, and the host clock is uncertain by `host_s`. Returns `None` before the first frame.
+    pub fn bounds(&self, longest_s: f64, host_s: f64) -> Option<[f64; 2]> {
+        let least = self.queue.front()?.delay_s;
+        Some([least - longest_s - host_s, least + host_s])
     }
 }
 

@@ -1,0 +1,160 @@
+//! Play of one gait under the monitor, cycle after cycle.
+
+use forecast::Tank;
+use swimmer_model::Model;
+
+use crate::monitor::{Departure, MeasuredMotion};
+use crate::{Course, CycleReport, Monitor, Pose};
+
+/// Poses in a row that must lie outside the margin: one may be wrong.
+const POSES_OUTSIDE: u32 = 3;
+/// A cycle is evaluated when the poses are past its end by this much \[s\]: some arrive out of order.
+const LATE_POSES_S: f64 = 0.05;
+
+/// Gait as the robot plays it.
+#[derive(Debug, Clone)]
+pub struct GaitOnRobot {
+    /// Predicted course of one cycle in steady state.
+    pub course: Course,
+    /// Duration of a cycle \[s\].
+    pub period_s: f64,
+}
+
+/// Tank and the distance that is kept from its walls \[m\].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TankWalls {
+    /// The tank.
+    pub tank: Tank,
+    /// Distance \[m\].
+    pub margin_m: f64,
+}
+
+/// Play under way.
+#[derive(Debug)]
+pub struct TrackedPlay {
+    model: Model<f64>,
+    walls: Option<TankWalls>,
+    monitor: Monitor,
+    gait: GaitOnRobot,
+    began_s: f64,
+    cycles: u32,
+    outside: u32,
+    reports: Vec<CycleReport>,
+}
+
+impl TrackedPlay {
+    /// A play of so many cycles, the first of which began at `began_s`. `others` are gaits that the robot may play by mistake.
+    pub fn new<'a>(
+        model: &Model<f64>,
+        walls: Option<TankWalls>,
+        gait: GaitOnRobot,
+        others: impl Iterator<Item = (&'a str, &'a Course)>,
+        began_s: f64,
+        cycles: u32,
+    ) -> Self {
+        let mut monitor = Monitor::new(*model, walls.map(|walls| walls.tank));
+        for (name, other) in others {
+            monitor.know(name, other.clone());
+        }
+        monitor.begin(gait.course.clone(), began_s);
+        Self {
+            model: *model,
+            walls,
+            monitor,
+            gait,
+            began_s,
+            cycles,
+            outside: 0,
+            reports: Vec::new(),
+        }
+    }
+
+    /// Takes a pose.
+    pub fn pose(&mut self, pose: &Pose) {
+        while self.cycle() < self.cycles
+            && pose.time_s > self.cycle_began_s() + self.gait.period_s + LATE_POSES_S
+        {
+            self.next_cycle();
+        }
+        self.monitor.pose(pose);
+        let time = (pose.time_s - self.began_s).rem_euclid(self.gait.period_s);
+        let is_outside = pose.time_s > self.began_s
+            && self.walls.is_some_and(|walls| {
+                let course = &self.gait.course;
+                let placed = pose.placed();
+                course.distance_to_wall(&self.model, &walls.tank, &placed, time) < walls.margin_m
+            });
+        self.outside = if is_outside { self.outside + 1 } else { 0 };
+    }
+
+    /// The robot came to rest: the cycles that are left are evaluated.
+    pub fn at_rest(&mut self) {
+        while self.cycle() < self.cycles {
+            let before = self.cycle();
+            self.next_cycle();
+            if self.cycle() == before {
+                break;
+            }
+        }
+    }
+
+    /// Returns `true` if the robot is nearer to a wall than the margin.
+    pub fn is_outside(&self) -> bool {
+        self.outside >= POSES_OUTSIDE
+    }
+
+    /// Returns `true` if all cycles are evaluated.
+    pub fn is_whole(&self) -> bool {
+        self.cycle() >= self.cycles
+    }
+
+    /// Start of the first cycle \[s\].
+    pub fn began_s(&self) -> f64 {
+        self.began_s
+    }
+
+    /// Reports of the cycles that have ended.
+    pub fn reports(&self) -> &[CycleReport] {
+        &self.reports
+    }
+
+    /// Departure that the latest cycle confirms.
+    pub fn departure(&self) -> Option<&Departure> {
+        self.reports.last()?.departure.as_ref()
+    }
+
+    /// Predicted motion over the cycles that have ended.
+    pub fn predicted(&self) -> swimmer_model::Pose<f64> {
+        let identity = swimmer_model::Pose::identity();
+        let nets = self.reports.iter().map(|report| report.predicted);
+        nets.fold(identity, |before, net| before * net)
+    }
+
+    /// Measured motion over the cycles that have ended. Returns `None` if the start of the first or the end of the last was not
+    /// seen.
+    pub fn measured(&self) -> Option<MeasuredMotion> {
+        let first = self.reports.first()?.measured?;
+        let last = self.reports.last()?.measured?;
+        Some(MeasuredMotion::spanning(&first, &last))
+    }
+
+    /// Cycle under way.
+    fn cycle(&self) -> u32 {
+        u32::try_from(self.reports.len()).unwrap_or(u32::MAX)
+    }
+
+    fn cycle_began_s(&self) -> f64 {
+        self.began_s + f64::from(self.cycle()) * self.gait.period_s
+    }
+
+    /// Evaluates the cycle under way, and begins the next one.
+    fn next_cycle(&mut self) {
+        if let Some(report) = self.monitor.end() {
+            self.reports.push(report);
+        }
+        if self.cycle() < self.cycles {
+            let began = self.cycle_began_s();
+            self.monitor.begin(self.gait.course.clone(), began);
+        }
+    }
+}
