@@ -3,8 +3,9 @@
 //! MCAP is read by Foxglove, by the `mcap` Python package and by many others. Two topics, `/link/to_robot` and
 //! `/link/from_robot`; each message is JSON after the JSON schema `swimmer.LinkFrame` that the file carries: host time, robot
 //! time if it is known, the decoded header and message if the frame is valid, and the raw bytes in hexadecimal, so that nothing
-//! depends on this program's decoder. A third topic, `/robot/telemetry`, repeats the telemetry frames in SI units for plots; it
-//! is written for people and never read back.
+//! depends on this program's decoder. A third topic, `/robot/telemetry`, repeats the telemetry frames in SI units for plots; a
+//! fourth, `/robot/scene`, shows the swimmer in Foxglove's 3D panel (`foxglove.SceneUpdate`). Both are written for people and
+//! never read back.
 //!
 //! Foxglove reads no schema with alternatives, so every field has one type and what is not known is left out.
 
@@ -13,6 +14,7 @@ mod frame;
 mod plays;
 mod read;
 mod records;
+mod scene;
 mod write;
 
 use std::path::{Path, PathBuf};

@@ -10,6 +10,7 @@ use serde_json::Value;
 
 use super::LinkFrame;
 use super::frame::{telemetry_json, topic};
+use super::scene::{self, Scenes};
 
 /// The JSON schema of each message, as the file carries it.
 const SCHEMA: &str = include_str!("schema.json");
@@ -21,11 +22,26 @@ const TELEMETRY_TOPIC: &str = "/robot/telemetry";
 /// A chunk holds the frames of so long, ns of the host's clock.
 const CHUNK_NS: u64 = 500_000_000;
 
+/// Compression of chunks, in the calling thread: chunks are small.
+#[cfg(feature = "compressed-logs")]
+fn options() -> WriteOptions {
+    WriteOptions::new()
+        .compression(Some(mcap::Compression::Zstd))
+        .compression_threads(0)
+}
+
+/// Plain chunks, for the lab page, whose module holds no compressor.
+#[cfg(not(feature = "compressed-logs"))]
+fn options() -> WriteOptions {
+    WriteOptions::new().compression(None)
+}
+
 /// A log that has its head, and takes frames.
 pub(super) struct Container<W: Write + Seek> {
     writer: Writer<W>,
-    /// To the robot, from it, and its telemetry.
-    channels: [u16; 3],
+    /// To the robot, from it, its telemetry, and the scene.
+    channels: [u16; 4],
+    scenes: Scenes,
     sequence: u32,
     /// Start time of the chunk being filled.
     chunk_began_ns: Option<u64>,
@@ -34,8 +50,7 @@ pub(super) struct Container<W: Write + Seek> {
 impl<W: Write + Seek> Container<W> {
     /// Writes the head.
     pub(super) fn begin(sink: W) -> McapResult<Self> {
-        let mut writer = WriteOptions::new()
-            .compression(None)
+        let mut writer = options()
             // A chunk is written when it is whole, instead of piece by piece with its length at the end.
             .disable_seeking(true)
             .profile("")
@@ -47,15 +62,19 @@ impl<W: Write + Seek> Container<W> {
             "jsonschema",
             TELEMETRY_SCHEMA.as_bytes(),
         )?;
+        let scene =
+            writer.add_schema(scene::SCHEMA_NAME, "jsonschema", scene::SCHEMA.as_bytes())?;
         let empty = BTreeMap::new();
         let channels = [
             writer.add_channel(schema, topic(Direction::ToRobot), "json", &empty)?,
             writer.add_channel(schema, topic(Direction::ToHost), "json", &empty)?,
             writer.add_channel(telemetry, TELEMETRY_TOPIC, "json", &empty)?,
+            writer.add_channel(scene, scene::TOPIC, "json", &empty)?,
         ];
         Ok(Self {
             writer,
             channels,
+            scenes: Scenes::default(),
             sequence: 0,
             chunk_began_ns: None,
         })
@@ -63,16 +82,20 @@ impl<W: Write + Seek> Container<W> {
 
     /// Adds a frame as it crossed the wire, sound or not.
     pub(super) fn write(&mut self, frame: &LinkFrame) -> McapResult<()> {
-        let [to_robot, from_robot, telemetry] = self.channels;
+        let [to_robot, from_robot, telemetry, scene] = self.channels;
         let channel = match frame.direction {
             Direction::ToRobot => to_robot,
             Direction::ToHost => from_robot,
         };
         let received = frame.received();
         self.add(channel, frame, &frame.to_json(received.as_ref()))?;
-        if let Some(Message::Telemetry(told)) = received.and_then(|received| received.message.ok())
-        {
-            self.add(telemetry, frame, &telemetry_json(&told))?;
+        if let Some(message) = received.and_then(|received| received.message.ok()) {
+            if let Message::Telemetry(told) = &message {
+                self.add(telemetry, frame, &telemetry_json(told))?;
+            }
+            if let Some(update) = self.scenes.after(&message, frame.host_time_ns) {
+                self.add(scene, frame, &update)?;
+            }
         }
         let now = frame.host_time_ns;
         let began = *self.chunk_began_ns.get_or_insert(now);

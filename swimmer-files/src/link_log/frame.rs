@@ -103,11 +103,16 @@ fn decoded(received: &Received) -> Value {
     Value::Object(fields)
 }
 
+/// Set-points of both joints, rad.
+pub(super) fn set_point(telemetry: &Telemetry) -> [f64; 2] {
+    telemetry
+        .setpoint
+        .map(|units| f64::from(units) / UNITS_PER_RADIAN)
+}
+
 /// A piece of telemetry in SI units.
 pub(super) fn telemetry_json(telemetry: &Telemetry) -> Value {
-    let [phi1, phi2] = telemetry
-        .setpoint
-        .map(|units| f64::from(units) / UNITS_PER_RADIAN);
+    let [phi1, phi2] = set_point(telemetry);
     let [pulse1, pulse2] = telemetry.pulse_ns.map(|ns| f64::from(ns) / 1e3);
     let mut json = json!({
         "robot_time_s": telemetry.robot_us as f64 / 1e6,

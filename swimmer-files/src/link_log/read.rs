@@ -67,7 +67,7 @@ pub fn parse_link_log(bytes: &[u8], path: &Path) -> Result<LinkLog, LinkLogError
             Some((FOOTER, _)) => break records.0.starts_with(MAGIC),
             Some((CHUNK, chunk)) => {
                 let chunk = of_chunk(chunk).map_err(|problem| reading.damaged(problem))?;
-                for (opcode, record) in Records(chunk) {
+                for (opcode, record) in Records(&chunk) {
                     reading.take(opcode, record)?;
                 }
             }

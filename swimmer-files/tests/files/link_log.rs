@@ -243,7 +243,7 @@ fn the_schemas_are_such_as_foxglove_reads() {
     LinkLogWriter::create(&path).unwrap().finish().unwrap();
     let bytes = std::fs::read(&path).unwrap();
     let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
-    assert_eq!(summary.channels.len(), 3);
+    assert_eq!(summary.channels.len(), 4);
     for channel in summary.channels.values() {
         let schema = channel.schema.as_ref().unwrap();
         let json = serde_json::from_slice(&schema.data).unwrap();
@@ -352,29 +352,64 @@ fn without_a_frame_nothing_changes() {
     assert_eq!(read_link_log(&path).unwrap().frames.len(), 1);
 }
 
-/// Writers of other programs compress: such a log is refused with the command that writes it plain.
-#[test]
-fn a_compressed_log_is_refused() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("link.mcap");
-    let mut log = LinkLogWriter::create(&path).unwrap();
-    log.write(&frame(1)).unwrap();
-    log.finish().unwrap();
-    let mut bytes = std::fs::read(&path).unwrap();
-    // The chunk's compression, an empty string, becomes "lz4": three bytes more in front of its records.
-    let chunk = (8..bytes.len())
-        .find(|&at| bytes[at] == 0x06 && bytes[at + 1 + 8 + 28..][..4] == [0; 4])
+/// The same frames, in chunks of this compression, as another program writes them.
+fn foreign_log(frames: &[LinkFrame], compression: Option<mcap::Compression>) -> Vec<u8> {
+    let plain = link_log_bytes(frames).unwrap();
+    let mut writer = mcap::WriteOptions::new()
+        .compression(compression)
+        .create(std::io::Cursor::new(Vec::new()))
         .unwrap();
-    let length = u64::from_le_bytes(*bytes[chunk + 1..].first_chunk().unwrap());
-    bytes[chunk + 1..chunk + 9].copy_from_slice(&(length + 3).to_le_bytes());
-    let name = chunk + 1 + 8 + 28;
-    bytes[name] = 3;
-    bytes.splice(name + 4..name + 4, *b"lz4");
+    for message in mcap::MessageStream::new(&plain).unwrap() {
+        writer.write(&message.unwrap()).unwrap();
+    }
+    writer.finish().unwrap();
+    writer.into_inner().into_inner()
+}
+
+#[test]
+fn compressed_logs_hold_the_same_frames() {
+    let frames = sound_frames(200);
+    let plain = foreign_log(&frames, None);
+    let compressed = foreign_log(&frames, Some(mcap::Compression::Zstd));
+    assert!(2 * compressed.len() < plain.len(), "{}", compressed.len());
+    for bytes in [plain, compressed] {
+        let log = parse_link_log(&bytes, "link.mcap".as_ref()).unwrap();
+        assert!(log.ended && log.frames == frames);
+    }
+}
+
+/// Where the chunk of a compressed log names its compression.
+fn compression_name(bytes: &[u8]) -> usize {
+    let at = bytes
+        .windows(8)
+        .position(|window| window == b"\x04\0\0\0zstd");
+    at.unwrap() + 4
+}
+
+#[test]
+fn another_compression_is_refused_with_a_way_on() {
+    let mut bytes = foreign_log(&sound_frames(3), Some(mcap::Compression::Zstd));
+    let name = compression_name(&bytes);
+    bytes[name..name + 4].copy_from_slice(b"lz4 ");
     let refused = parse_link_log(&bytes, "link.mcap".as_ref()).unwrap_err();
+    let refused = refused.to_string();
     assert!(
-        refused
-            .to_string()
-            .contains("mcap compress --compression none"),
+        refused.contains("mcap compress --compression zstd"),
         "{refused}"
     );
+}
+
+/// A chunk that holds more or less than it declares is refused, and a size that fits no memory is not allocated.
+#[test]
+fn a_compressed_chunk_of_another_size_is_refused() {
+    let sound = foreign_log(&sound_frames(3), Some(mcap::Compression::Zstd));
+    // Length of the name, checksum and size are before the name.
+    let size_at = compression_name(&sound) - 4 - 4 - 8;
+    let size = u64::from_le_bytes(*sound[size_at..].first_chunk().unwrap());
+    for declared in [0, size - 1, size + 1, 1 << 40, u64::MAX] {
+        let mut bytes = sound.clone();
+        bytes[size_at..size_at + 8].copy_from_slice(&declared.to_le_bytes());
+        let refused = parse_link_log(&bytes, "link.mcap".as_ref()).unwrap_err();
+        assert!(refused.to_string().contains("chunk"), "{refused}");
+    }
 }
