@@ -23,4 +23,7 @@ mod _swimmer {
     use super::gait::Gait;
     #[pymodule_export]
     use super::swimmer::Swimmer;
+    #[pymodule_export]
+    #[allow(non_upper_case_globals)] // Python's name
+    const __version__: &str = env!("CARGO_PKG_VERSION");
 }

@@ -30,6 +30,47 @@ impl Swimmer {
 
 #[pymethods]
 impl Swimmer {
+    /// A viscous swimmer of these links and drag; `side` is both side links, or give `front` and `back`.
+    #[new]
+    #[pyo3(signature = (*, middle, side=None, front=None, back=None, chi=2.0, sphere_radius=0.0, log_aspect=None,
+        half_thickness=None, over_viscosity=None, kinematic_viscosity=None, density=None, name="swimmer"))]
+    #[allow(clippy::too_many_arguments)] // each is a keyword in Python
+    fn new(
+        middle: f64,
+        side: Option<f64>,
+        front: Option<f64>,
+        back: Option<f64>,
+        chi: f64,
+        sphere_radius: f64,
+        log_aspect: Option<f64>,
+        half_thickness: Option<f64>,
+        over_viscosity: Option<f64>,
+        kinematic_viscosity: Option<f64>,
+        density: Option<f64>,
+        name: &str,
+    ) -> PyResult<Self> {
+        if side.is_none() && (front.is_none() || back.is_none()) {
+            return Err(BadInput::new_err(
+                "a swimmer has two side links: give side, or front and back",
+            ));
+        }
+        // Every value but c_t is replaced, and c_t too where a form of it is given.
+        Self::preset("purcell")?.replace(
+            Some(name.to_owned()),
+            Some(middle),
+            side,
+            front,
+            back,
+            Some(chi),
+            Some(sphere_radius),
+            log_aspect,
+            half_thickness,
+            over_viscosity,
+            kinematic_viscosity,
+            density,
+        )
+    }
+
     /// A preset that `swimmer swimmers` lists, such as `purcell`, `robot` or `perfect-fluid`.
     #[staticmethod]
     fn preset(name: &str) -> PyResult<Self> {

@@ -15,7 +15,7 @@ Lengths are in metres, angles in radians; `70deg` is understood where a number i
 from . import optimize, sweep
 from ._commands import atlas, calibrate, certify, height_map, plan, simulate, tracks
 from ._run import Doubt
-from ._swimmer import BadInput, Error, Failed, Gait, Swimmer
+from ._swimmer import BadInput, Error, Failed, Gait, Swimmer, __version__
 from .results import Atlas, Calibration, HeightMap, OptimalGait, Result, Simulation
 
 __all__ = [
@@ -31,6 +31,7 @@ __all__ = [
     "Result",
     "Simulation",
     "Swimmer",
+    "__version__",
     "atlas",
     "calibrate",
     "certify",

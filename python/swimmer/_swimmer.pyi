@@ -5,7 +5,9 @@ from typing import final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["BadInput", "Error", "Failed", "Gait", "Swimmer", "options", "run", "run_captured"]
+__all__ = ["BadInput", "Error", "Failed", "Gait", "Swimmer", "__version__", "options", "run", "run_captured"]
+
+__version__: str
 
 class Error(Exception):
     """Something was asked for and not done; the text says what, and what to do next."""
@@ -21,8 +23,28 @@ class Swimmer:
     """A three-link swimmer: links, drag, sphere, and where known its fluid and servos. It never changes; `replace` gives another.
 
     Lengths are in metres, angles in radians, drag and power over the viscosity.
+
+    `Swimmer(middle=0.07, side=0.14, chi=3.6)` makes a viscous one. `side` is both side links, in place of `front` and `back`;
+    `log_aspect`, `half_thickness` and `over_viscosity` are the forms of c_t, of which at most one is given (`over_viscosity=1`
+    unless one is); no sphere unless `sphere_radius` is given.
     """
 
+    def __new__(
+        cls,
+        *,
+        middle: float,
+        side: float | None = None,
+        front: float | None = None,
+        back: float | None = None,
+        chi: float = 2.0,
+        sphere_radius: float = 0.0,
+        log_aspect: float | None = None,
+        half_thickness: float | None = None,
+        over_viscosity: float | None = None,
+        kinematic_viscosity: float | None = None,
+        density: float | None = None,
+        name: str = "swimmer",
+    ) -> Swimmer: ...
     @staticmethod
     def preset(name: str) -> Swimmer:
         """A preset that `swimmer swimmers` lists, such as `purcell`, `robot` or `perfect-fluid`."""

@@ -90,6 +90,17 @@ def test_swimmers_make_the_round_trip(tmp_path: Path, robot: sw.Swimmer) -> None
     assert other.length == pytest.approx(0.071 + 2 * 0.137)
 
 
+def test_a_swimmer_from_its_numbers(purcell: sw.Swimmer) -> None:
+    assert sw.__version__.count(".") == 2
+    made = sw.Swimmer(middle=1.0, side=1.0, name="purcell")
+    assert made == purcell
+    other = sw.Swimmer(middle=0.071, front=0.137, back=0.12, chi=3.6, sphere_radius=0.0692, log_aspect=4.543)
+    assert (other.front, other.back, other.chi, other.sphere_radius) == (0.137, 0.12, 3.6, 0.0692)
+    assert (other.c_t, other.name) == ({"log_aspect": 4.543}, "swimmer")
+    with pytest.raises(sw.BadInput, match="two side links"):
+        sw.Swimmer(middle=1.0, front=1.0)
+
+
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
