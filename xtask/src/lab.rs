@@ -15,11 +15,11 @@ pub(crate) use browse::{bench, test};
 
 /// Sources of the page; npm installs the bundler and the test tools there.
 const PAGE: &str = "lab/page";
-/// Modules built from `lab/wasm`, one for each kind of worker: the feature that selects it and the optimisation level of
+/// Modules built from `lab/wasm`: the feature that selects it and the optimisation level of
 /// `lab/wasm` itself. Generic code gets its caller's level, so the module that computes while a gait is dragged has a high one.
-const MODULES: [(&str, &str); 3] = [("explore", "2"), ("drive", "'z'"), ("calibrate", "'z'")];
+const MODULES: [(&str, &str); 2] = [("explore", "2"), ("robot", "'z'")];
 /// Limits of the sizes in bytes.
-const LARGEST_MODULE: usize = 1_400_000;
+const LARGEST_MODULE: usize = 2_000_000;
 /// Loads within a second from a disk or a local network; words for symbols and hints took the page past 1.6 MB.
 const LARGEST_PAGE: usize = 1_700_000;
 /// Optimisation level of the standard library's sines and exponentials. Only this build compiles that crate.

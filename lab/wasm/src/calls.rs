@@ -9,9 +9,9 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-#[cfg(feature = "calibrate")]
+#[cfg(feature = "robot")]
 use crate::calibration;
-#[cfg(feature = "drive")]
+#[cfg(feature = "robot")]
 use crate::drive;
 #[cfg(feature = "explore")]
 use crate::explore;
@@ -35,9 +35,9 @@ pub type Call = fn(&mut Lab, &[u8]) -> Outcome;
 const TABLES: &[&[(&str, Call)]] = &[
     #[cfg(feature = "explore")]
     explore::CALLS,
-    #[cfg(feature = "drive")]
+    #[cfg(feature = "robot")]
     drive::CALLS,
-    #[cfg(feature = "calibrate")]
+    #[cfg(feature = "robot")]
     calibration::CALLS,
 ];
 

@@ -1,5 +1,5 @@
 //! Calls of the Calibrate tab: dropped files give the same fit as the library.
-#![cfg(feature = "calibrate")]
+#![cfg(feature = "robot")]
 
 use calibrate::{CampaignData, FitOptions, calibrate_campaign};
 use serde_json::{Value, json};

@@ -4,7 +4,7 @@ import { signal } from "@preact/signals";
 import { Lab, Latest } from "../wasm/lab.ts";
 import type { AdviceOutput, AssessmentOutput, EvidenceOutput, FitOutput, NuisanceOutput, Holdings } from "./outputs.ts";
 
-const lab = new Lab("calibrate");
+const lab = new Lab("robot");
 
 export const tracks = signal<readonly { name: string; holds: Holdings }[]>([]);
 export const fit = signal<FitOutput | null>(null);

@@ -63,7 +63,7 @@ const UPLOADING = "uploading the gait";
 let worker: Promise<Worker> | undefined;
 
 function order(order: Order): void {
-  worker ??= startWorker(source, "drive").then((started) => {
+  worker ??= startWorker(source, "robot").then((started) => {
     started.onmessage = ({ data }: MessageEvent<News>) => hear(data);
     return started;
   });

@@ -1,7 +1,7 @@
 // WebAssembly modules, unpacked from the page and compiled once for all workers.
 
-/** Kind of module; each kind of worker has its own. */
-export type ModuleName = "explore" | "drive" | "calibrate";
+/** Name of a module; each worker has an instance of its own. */
+export type ModuleName = "explore" | "robot";
 
 const compiled = new Map<ModuleName, Promise<WebAssembly.Module>>();
 
