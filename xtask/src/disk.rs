@@ -28,6 +28,14 @@ pub(crate) fn remove_folder(path: &Path) -> Outcome {
     }
 }
 
+/// Removes a file; a missing file is no error.
+pub(crate) fn remove_file(path: &Path) -> Outcome {
+    match fs::remove_file(path) {
+        Err(why) if why.kind() != io::ErrorKind::NotFound => Err(failed("removing", path, why)),
+        _ => Ok(()),
+    }
+}
+
 /// Writes a file and creates its folder.
 pub(crate) fn write(path: &Path, content: impl AsRef<[u8]>) -> Outcome {
     if let Some(folder) = path.parent() {
@@ -46,6 +54,29 @@ pub(crate) fn copy(from: &Path, to: &Path) -> Outcome {
     fs::copy(from, to)
         .map(drop)
         .map_err(|why| failed("copying to", to, why))
+}
+
+/// Copies all files of a folder and of those in it.
+pub(crate) fn copy_folder(from: &Path, to: &Path) -> Outcome {
+    for file in files_below(from)? {
+        let copied = to.join(file.strip_prefix(from).unwrap_or(&file));
+        copied.parent().map_or(Ok(()), make_folder)?;
+        copy(&file, &copied)?;
+    }
+    Ok(())
+}
+
+/// Sorted paths of all files in a folder and in those in it.
+pub(crate) fn files_below(folder: &Path) -> Outcome<Vec<PathBuf>> {
+    let mut files = Vec::new();
+    for entry in entries(folder, |_| true)? {
+        if entry.is_dir() {
+            files.extend(files_below(&entry)?);
+        } else {
+            files.push(entry);
+        }
+    }
+    Ok(files)
 }
 
 /// Sorted entries of a folder whose names satisfy `fits`.

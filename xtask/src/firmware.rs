@@ -71,7 +71,7 @@ impl Variant {
         }
     }
 
-    fn name(self) -> String {
+    pub(crate) fn name(self) -> String {
         let board = self.board.feature();
         match self.battery_divider_milli {
             Some(milli) => format!("{board}-divider-{milli}"),

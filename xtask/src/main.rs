@@ -60,12 +60,8 @@ enum Chore {
     Book,
     /// Builds the lab page with its WebAssembly modules: one HTML file in target/lab.
     Lab,
-    /// Makes the content of a release: the command, the wheel, firmware, checksums, notes.
-    Release {
-        /// Only make the files, under target/release-dry-run.
-        #[arg(long)]
-        dry_run: bool,
-    },
+    /// Builds the archive of a release (command with the lab page inside, wheel, firmware, book, checksums) and tries it.
+    Release,
     /// Installs the RP2040 emulator that boots the firmware in tests (npm).
     Emulator,
     /// Unpacks Debian's Slurm under target/slurm for the test of job arrays.
@@ -153,7 +149,7 @@ fn perform(chore: Chore) -> Outcome {
         }
         Chore::Book => book::build(),
         Chore::Lab => lab::build().map(drop),
-        Chore::Release { dry_run } => release::prepare(dry_run),
+        Chore::Release => release::build(),
         Chore::Slurm => slurm::unpack(),
         Chore::Emulator => emulator::install(),
         Chore::Python => python::test(true),

@@ -1,21 +1,30 @@
-//! `cargo xtask release --dry-run`: writes the content of a release to one folder, with checksums and notes. Parts that cannot be
-//! made yet are named in a message.
+//! `cargo xtask release`: builds an archive for users without Rust or Node, and tries it as such a user would.
+//!
+//! The archive holds the command with the lab page inside, its manual and completions, the wheel, the firmware of both boards, the book,
+//! a bill of materials, notes and checksums.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use sha2::{Digest, Sha256};
 
+use crate::book;
 use crate::debian;
-use crate::disk::{copy, entries, make_folder, read_bytes, remove_folder, write};
+use crate::disk::{
+    copy, copy_folder, entries, files_below, make_folder, read_bytes, remove_file, remove_folder,
+    write,
+};
 use crate::failure::{Failure, Outcome};
 use crate::firmware::{self, Board, Variant};
 use crate::lab;
+use crate::python;
 use crate::run::{cargo, command, read, run, target_folder};
 use crate::toolchain::{Target, Toolchain};
+use crate::tools::CYCLONEDX;
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
-/// Files in the archive of the command, in addition to the program and its manual.
+/// Files of the checkout that a release repeats.
 const PAPERS: [&str; 5] = [
     "README.md",
     "CHANGELOG.md",
@@ -23,56 +32,59 @@ const PAPERS: [&str; 5] = [
     "LICENSE-MIT",
     "LICENSE-APACHE",
 ];
-/// Fixed time in archives, so that equal sources give equal bytes.
-const EPOCH: &str = "--mtime=@0";
+/// Feature of the command and of the wheel that compiles the lab page into them.
+const PAGE_INSIDE: [&str; 2] = ["--features", "embedded-page"];
+/// Variable with the path of the page that is compiled in.
+const PAGE: &str = "SWIMMER_LAB_PAGE";
+/// Time of all files in archives, so that equal sources give equal bytes: 1980, the earliest that a wheel can hold.
+const EPOCH: &str = "315532800";
 
-/// Makes everything under `target/release-dry-run`.
+/// Builds everything under `target/release-VERSION`, packs it, and tries the archive.
 ///
 /// # Errors
-/// `dry_run` is `false`, or a part cannot be made.
-pub(crate) fn prepare(dry_run: bool) -> Outcome {
-    if !dry_run {
-        return Err(Failure::new(
-            "releasing",
-            "there is no place to release to yet",
-            "see what a release would hold: `cargo xtask release --dry-run`",
-        ));
-    }
+/// A part cannot be built, or does not work alone.
+pub(crate) fn build() -> Outcome {
     let target = target_folder()?;
-    let folder = target.join("release-dry-run");
+    let folder = target.join(format!("release-{VERSION}"));
     remove_folder(&folder)?;
-    make_folder(&folder)?;
-    let mut missing = Vec::new();
-    command_archive(&target, &folder)?;
-    images(&target, &folder)?;
-    wheel(&folder, &mut missing)?;
-    lab_page(&folder)?;
-    let changelog = String::from_utf8_lossy(&read_bytes(Path::new("CHANGELOG.md"))?).into_owned();
-    write(&folder.join("NOTES.md"), notes(&changelog)?)?;
-    let sums = checksums(&folder)?;
-    write(&folder.join("SHA256SUMS"), &sums)?;
-    print!("\n{}:\n{sums}", folder.display());
-    for part in &missing {
-        println!("MISSING: {part}");
-    }
-    Ok(())
-}
-
-/// Archive of the command for this platform, with its manual pages and completions.
-fn command_archive(target: &Path, folder: &Path) -> Outcome {
-    let next = "fix what the compiler reports above";
-    run(&mut cargo(["build", "--release", "-p", "swimmer"]), next)?;
     let rustc = read(command("rustc").arg("-vV"), "check `rustc -vV`")?;
-    let host = host(&rustc)?;
-    let name = format!("swimmer-{VERSION}-{host}");
+    let name = format!("swimmer-{VERSION}-{}", host(&rustc)?);
     let stage = folder.join(&name);
-    let program = format!("swimmer{}", std::env::consts::EXE_SUFFIX);
     make_folder(&stage)?;
-    let built = target.join("release").join(&program);
-    copy(&built, &stage.join(&program))?;
+    let page = lab::build()?;
+    command_with_page(&target, &stage, &page)?;
+    images(&target, &stage.join("firmware"))?;
+    wheel(&stage, &page)?;
+    book::build()?;
+    copy_folder(&target.join("book"), &stage.join("book"))?;
+    bill_of_materials(&stage)?;
     for paper in PAPERS {
         copy(Path::new(paper), &stage.join(paper))?;
     }
+    let changelog = String::from_utf8_lossy(&read_bytes(Path::new("CHANGELOG.md"))?).into_owned();
+    write(&stage.join("NOTES.md"), notes(&changelog)?)?;
+    write(&stage.join("SHA256SUMS"), checksums(&stage)?)?;
+    let archive = pack(&folder, &name)?;
+    remove_folder(&stage)?;
+    let sum = checksums(&folder)?;
+    write(&folder.join("SHA256SUMS"), &sum)?;
+    try_out(&archive, &folder.join("trial"), &name)?;
+    remove_folder(&folder.join("trial"))?;
+    print!("\n{}:\n{sum}", folder.display());
+    Ok(())
+}
+
+/// The command, its manual pages and completions.
+fn command_with_page(target: &Path, stage: &Path, page: &Path) -> Outcome {
+    run(
+        cargo(["build", "--release", "-p", "swimmer"])
+            .args(PAGE_INSIDE)
+            .env(PAGE, page),
+        "fix what the compiler reports above",
+    )?;
+    let program = format!("swimmer{}", std::env::consts::EXE_SUFFIX);
+    let built = target.join("release").join(&program);
+    copy(&built, &stage.join(&program))?;
     let next = "run it by hand to see why";
     read(
         command(&built).args(["man", "-o"]).arg(stage.join("man")),
@@ -82,24 +94,7 @@ fn command_archive(target: &Path, folder: &Path) -> Outcome {
         let text = read(command(&built).args(["completions", shell]), next)?;
         write(&stage.join("completions").join(shell), text)?;
     }
-    let archive = folder.join(format!("{name}.tar.gz"));
-    run(
-        command("tar")
-            .args([
-                "--sort=name",
-                "--owner=0",
-                "--group=0",
-                "--numeric-owner",
-                EPOCH,
-                "-C",
-            ])
-            .arg(folder)
-            .args(["--use-compress-program=gzip -n", "-cf"])
-            .arg(&archive)
-            .arg(&name),
-        "install GNU tar",
-    )?;
-    remove_folder(&stage)
+    Ok(())
 }
 
 /// Platform in the output of `rustc -vV`.
@@ -111,27 +106,19 @@ fn host(version: &str) -> Outcome<&str> {
 /// UF2 files of both boards.
 fn images(target: &Path, folder: &Path) -> Outcome {
     let toolchain = Toolchain::find_or_make(Target::Chip)?;
+    make_folder(folder)?;
     for board in Board::ALL {
-        firmware::build(&toolchain, Variant::plain(board))?;
-    }
-    for board in ["nano-connect", "pico"] {
-        let from = target
-            .join("firmware-images")
-            .join(format!("swimmer-{board}.uf2"));
-        copy(
-            &from,
-            &folder.join(format!("swimmer-{VERSION}-{board}.uf2")),
-        )?;
+        let variant = Variant::plain(board);
+        firmware::build(&toolchain, variant)?;
+        let image = format!("swimmer-{}.uf2", variant.name());
+        let from = target.join("firmware-images").join(&image);
+        copy(&from, &folder.join(&image))?;
     }
     Ok(())
 }
 
 /// Python wheel, built by pip.
-fn wheel(folder: &Path, missing: &mut Vec<&'static str>) -> Outcome {
-    if !Path::new("pyproject.toml").is_file() {
-        missing.push("the Python wheel: there is no pyproject.toml");
-        return Ok(());
-    }
+fn wheel(stage: &Path, page: &Path) -> Outcome {
     debian::ensure_tool(
         command("python3").args(["-m", "pip", "--version"]),
         &["python3-pip", "python3-venv"],
@@ -139,16 +126,118 @@ fn wheel(folder: &Path, missing: &mut Vec<&'static str>) -> Outcome {
     run(
         command("python3")
             .args(["-m", "pip", "wheel", "--no-deps", "--quiet", "-w"])
-            .arg(folder)
-            .arg("."),
+            .arg(stage)
+            .arg(".")
+            .env("MATURIN_PEP517_ARGS", PAGE_INSIDE.join(" "))
+            .env("SOURCE_DATE_EPOCH", EPOCH)
+            .env(PAGE, page),
         "fix what pip or maturin reports above",
     )
 }
 
-/// Lab page.
-fn lab_page(folder: &Path) -> Outcome {
-    let page = lab::build()?;
-    copy(&page, &folder.join(format!("swimmer-lab-{VERSION}.html")))
+/// Crates in the command, with versions and licences (`CycloneDX`). The tool writes next to each Cargo.toml of the workspace.
+fn bill_of_materials(stage: &Path) -> Outcome {
+    const NAME: &str = "swimmer-sbom";
+    run(
+        CYCLONEDX
+            .cargo(true)?
+            .args(["--manifest-path", "cli/Cargo.toml", "--format", "json"])
+            .args(["--override-filename", NAME])
+            .env("SOURCE_DATE_EPOCH", EPOCH),
+        "run it by hand to see why",
+    )?;
+    let file = format!("{NAME}.json");
+    copy(&Path::new("cli").join(&file), &stage.join(&file))?;
+    for package in entries(Path::new("."), |_| true)? {
+        remove_file(&package.join(&file))?;
+    }
+    Ok(())
+}
+
+/// Packs the folder `name`, in a fixed order and with a fixed time.
+fn pack(folder: &Path, name: &str) -> Outcome<PathBuf> {
+    let archive = folder.join(format!("{name}.tar.gz"));
+    run(
+        command("tar")
+            .args([
+                "--sort=name",
+                "--owner=0",
+                "--group=0",
+                "--numeric-owner",
+                "--mode=u=rwX,go=rX",
+            ])
+            .arg(format!("--mtime=@{EPOCH}"))
+            .arg("-C")
+            .arg(folder)
+            .args(["--use-compress-program=gzip -n", "-cf"])
+            .arg(&archive)
+            .arg(name),
+        "install GNU tar",
+    )?;
+    Ok(archive)
+}
+
+/// Unpacks the archive and uses it without the checkout: demo, lab page, wheel.
+fn try_out(archive: &Path, folder: &Path, name: &str) -> Outcome {
+    python::ensure()?;
+    make_folder(folder)?;
+    let begun = Instant::now();
+    let next = "repeat the steps above by hand, in an empty folder";
+    // Nothing of the developer's environment but the system's programs and pip's configuration.
+    let alone = |program: &Path| {
+        let mut alone = command(program);
+        alone
+            .current_dir(folder)
+            .env_remove("SWIMMER_LAB_PAGE")
+            .env("PATH", "/usr/local/bin:/usr/bin:/bin");
+        alone
+    };
+    let tar = Path::new("tar");
+    run(alone(tar).arg("-xzf").arg(archive), next)?;
+    let unpacked = folder.join(name);
+    run(
+        command("sha256sum")
+            .args(["--check", "--quiet", "SHA256SUMS"])
+            .current_dir(&unpacked),
+        next,
+    )?;
+    let swimmer = unpacked.join(format!("swimmer{}", std::env::consts::EXE_SUFFIX));
+    run(alone(&swimmer).args(["demo", "-o", "demo"]), next)?;
+    run(alone(&swimmer).args(["lab", "--export", "page.html"]), next)?;
+    for file in ["demo/report.html", "demo/lab.html", "page.html"] {
+        read_bytes(&folder.join(file))?;
+    }
+    let python = folder.join("python/bin/python");
+    run(
+        alone(Path::new("python3")).args(["-m", "venv", "python"]),
+        next,
+    )?;
+    let wheel = files_below(&unpacked)?
+        .into_iter()
+        .find(|path| path.extension().is_some_and(|ending| ending == "whl"))
+        .ok_or_else(|| Failure::new("trying the release", "it holds no wheel", next))?;
+    run(
+        alone(&python)
+            .args(["-m", "pip", "install", "--quiet"])
+            .arg(wheel),
+        next,
+    )?;
+    run(
+        alone(&python).args([
+            "-c",
+            "import swimmer as sw; print(sw.__version__, sw.optimize.displacement(sw.Swimmer.preset('purcell')).displacement_over_length)",
+        ]),
+        next,
+    )?;
+    run(
+        alone(&python).args(["-m", "swimmer", "lab", "--export", "wheel.html"]),
+        next,
+    )?;
+    println!(
+        "demo, lab page and wheel from the archive alone: {:.0} s",
+        begun.elapsed().as_secs_f64()
+    );
+    Ok(())
 }
 
 /// Section `[Unreleased]` of the changelog.
@@ -173,17 +262,16 @@ fn notes(changelog: &str) -> Outcome<String> {
     Ok(format!("# swimmer {VERSION}\n\n{}\n", body.trim()))
 }
 
-/// One line per file in the format of `sha256sum`.
+/// One line per file below the folder, in the format of `sha256sum`.
 fn checksums(folder: &Path) -> Outcome<String> {
     let mut sums = String::new();
-    let files: Vec<PathBuf> = entries(folder, |_| true)?;
-    for file in files.iter().filter(|file| file.is_file()) {
-        let name = file.file_name().unwrap_or_default().to_string_lossy();
-        for byte in Sha256::digest(read_bytes(file)?) {
+    for file in files_below(folder)? {
+        for byte in Sha256::digest(read_bytes(&file)?) {
             // Writing to a string cannot fail.
             let _ = write!(sums, "{byte:02x}");
         }
-        let _ = writeln!(sums, "  {name}");
+        let name = file.strip_prefix(folder).unwrap_or(&file);
+        let _ = writeln!(sums, "  {}", name.display());
     }
     Ok(sums)
 }

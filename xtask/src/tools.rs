@@ -21,6 +21,11 @@ pub(crate) const DENY: Tool = Tool {
     package: "cargo-deny",
     version: "0.20.2",
 };
+/// Lists the dependencies of the command for a release.
+pub(crate) const CYCLONEDX: Tool = Tool {
+    package: "cargo-cyclonedx",
+    version: "0.5.9",
+};
 /// Mutates the code and counts the changes that no test detects.
 pub(crate) const MUTANTS: Tool = Tool {
     package: "cargo-mutants",

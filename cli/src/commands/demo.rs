@@ -112,15 +112,10 @@ impl Demo {
 
 /// Puts the lab page next to the report, if this checkout or release has it. Returns the address that shows the results in it.
 fn lab_page(round: &Finished, draft: &Path) -> Outcome<Option<String>> {
-    let Some(page) = lab::find() else {
+    let Some(page) = lab::own()? else {
         return Ok(None);
     };
-    std::fs::copy(&page, draft.join(LAB)).map_err(|error| {
-        Failure::Tried(format!(
-            "cannot copy the lab page {} into the report's folder: {error}",
-            page.display()
-        ))
-    })?;
+    write_atomically(&draft.join(LAB), &page)?;
     let (bound, _) = round.bounds;
     Ok(Some(lab::beside(LAB, &round.fitted, bound, round.period_s)))
 }

@@ -19,7 +19,7 @@ use swimmer_files::write_atomically;
 
 use self::callers::{Caller, Callers};
 use self::gate::{Gate, Token};
-pub(crate) use self::page::{beside, find};
+pub(crate) use self::page::{beside, own};
 use self::visitor::Server;
 use crate::commands::robot::SharedPortOptions;
 use crate::failure::{Failure, Outcome};

@@ -1,5 +1,6 @@
 //! File of the lab page.
 
+use std::borrow::Cow;
 use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,25 +13,46 @@ use crate::failure::{Failure, Outcome};
 use crate::output::aside;
 
 const NAME: &str = "swimmer-lab.html";
+/// Page that a release holds in its program.
+#[cfg(feature = "embedded-page")]
+const EMBEDDED: Option<&[u8]> = Some(include_bytes!(env!("SWIMMER_LAB_PAGE")));
+#[cfg(not(feature = "embedded-page"))]
+const EMBEDDED: Option<&[u8]> = None;
 /// Mark in the head of every lab page.
 const MARK: &str = "<meta name=\"swimmer-lab\" content=\"";
 
 /// The mark is within this many bytes.
 const HEAD: usize = 4096;
 
-/// Reads the page: the named one, the one next to this program (a release's), or the one that this checkout's `cargo xtask lab`
-/// made.
+/// Returns the page: the named one, or else the program's own.
 ///
 /// # Errors
-/// [`Failure::BadInput`] without a page, with the way to make one.
-pub(super) fn load(named: Option<&Path>) -> Outcome<Vec<u8>> {
-    let path = named.map(Path::to_path_buf).or_else(find).ok_or_else(|| {
-        Failure::BadInput(format!(
-            "there is no lab page here: in a checkout make it with `cargo xtask lab` (it needs node), or name a release's with --page {NAME}"
-        ))
-    })?;
+/// [`Failure::BadInput`] if there is no page, with the way to make one, or if the file is no lab page.
+pub(super) fn load(named: Option<&Path>) -> Outcome<Cow<'static, [u8]>> {
+    let Some(path) = named else {
+        return own()?.ok_or_else(|| {
+            Failure::BadInput(format!(
+                "there is no lab page here: in a checkout make it with `cargo xtask lab` (it needs node), or name a release's with --page {NAME}"
+            ))
+        });
+    };
+    read(path).map(Cow::Owned)
+}
+
+/// Returns the page that is part of the program or, in a checkout, the one that `cargo xtask lab` made; `None` if it made none.
+///
+/// # Errors
+/// As [`load`].
+pub(crate) fn own() -> Outcome<Option<Cow<'static, [u8]>>> {
+    if let Some(page) = EMBEDDED {
+        return Ok(Some(Cow::Borrowed(page)));
+    }
+    find().map(|path| read(&path).map(Cow::Owned)).transpose()
+}
+
+fn read(path: &Path) -> Outcome<Vec<u8>> {
     let shown = path.display();
-    let page = fs::read(&path)
+    let page = fs::read(path)
         .map_err(|error| Failure::BadInput(format!("cannot read the page {shown}: {error}")))?;
     // Its head is ASCII; behind it modules lie as bytes.
     let head = String::from_utf8_lossy(page.get(..HEAD).unwrap_or(&page));
@@ -65,14 +87,11 @@ pub(crate) fn beside(name: &str, swimmer: &SwimmerFile, max_angle: f64, period_s
     )
 }
 
-/// The page of this checkout or this release, if there is one.
-pub(crate) fn find() -> Option<PathBuf> {
+/// Page of this checkout: target/lab/swimmer-lab.html for target/debug/swimmer.
+fn find() -> Option<PathBuf> {
     let program = env::current_exe().ok()?;
-    let folder = program.parent()?;
-    // target/debug/swimmer and target/lab/swimmer-lab.html
-    [folder.join(NAME), folder.join("../lab").join(NAME)]
-        .into_iter()
-        .find(|path| path.is_file())
+    let page = program.parent()?.join("../lab").join(NAME);
+    page.is_file().then_some(page)
 }
 
 #[cfg(test)]

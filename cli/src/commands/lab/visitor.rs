@@ -1,5 +1,6 @@
 //! One connection: its request is judged, then it gets the page, or carries the robot's bytes until it closes.
 
+use std::borrow::Cow;
 use std::io::{self, Read as _, Write as _};
 use std::net::TcpStream;
 use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
@@ -36,7 +37,7 @@ const FROZEN: Duration = Duration::from_millis(1250);
 /// State that all connections share.
 pub(super) struct Server {
     pub(super) gate: Gate,
-    pub(super) page: Vec<u8>,
+    pub(super) page: Cow<'static, [u8]>,
     pub(super) hub: ToHub,
 }
 
