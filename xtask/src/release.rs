@@ -12,8 +12,7 @@ use sha2::{Digest, Sha256};
 use crate::book;
 use crate::debian;
 use crate::disk::{
-    copy, copy_folder, entries, files_below, make_folder, read_bytes, remove_file, remove_folder,
-    write,
+    copy, copy_folder, files_below, make_folder, read_bytes, remove_file, remove_folder, write,
 };
 use crate::failure::{Failure, Outcome};
 use crate::firmware::{self, Board, Variant};
@@ -147,9 +146,18 @@ fn bill_of_materials(stage: &Path) -> Outcome {
         "run it by hand to see why",
     )?;
     let file = format!("{NAME}.json");
-    copy(&Path::new("cli").join(&file), &stage.join(&file))?;
-    for package in entries(Path::new("."), |_| true)? {
-        remove_file(&package.join(&file))?;
+    let written = read_bytes(&Path::new("cli").join(&file))?;
+    // Equal for every checkout.
+    let checkout = std::env::current_dir()
+        .map_err(|why| Failure::new("finding the checkout", why, "repeat the command"))?;
+    let text = String::from_utf8_lossy(&written).replace(&*checkout.to_string_lossy(), "/swimmer");
+    write(&stage.join(&file), text)?;
+    let manifests = read(
+        command("git").args(["ls-files", "*Cargo.toml"]),
+        "build a release from a git checkout",
+    )?;
+    for manifest in manifests.lines() {
+        remove_file(&Path::new(manifest).with_file_name(&file))?;
     }
     Ok(())
 }
