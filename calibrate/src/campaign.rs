@@ -126,13 +126,13 @@ fn begun<'a>(
     campaign: &Campaign,
     data: &'a CampaignData,
 ) -> Result<Vec<EitherRun<'a>>, CalibrateError> {
-    let (mut tracked, mut gaits) = (data.runs.iter(), data.told.iter());
+    let (mut tracked, mut gaits) = (data.runs.iter(), data.reported_gaits.iter());
     let swimmer = &campaign.swimmer;
     let begin = |index: usize| {
         let run = &campaign.runs[index];
-        Some(if let Some(told) = &run.told {
-            ReportedRun::begin(index, (run, told), gaits.next()?, swimmer)
-                .map(|run| EitherRun::Told(Box::new(run)))
+        Some(if let Some(reported) = &run.reported {
+            ReportedRun::begin(index, (run, reported), gaits.next()?, swimmer)
+                .map(|run| EitherRun::Reported(Box::new(run)))
         } else {
             Run::begin(tracked.next()?, index, &campaign.reflectors, swimmer)
                 .map(|run| EitherRun::Tracked(Box::new(run)))

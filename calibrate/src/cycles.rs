@@ -19,7 +19,7 @@ mod phase;
 mod statistics;
 mod warning;
 
-use swimmer_files::{ToldRun, ToldValue};
+use swimmer_files::{ReportedResults, ReportedValue};
 use swimmer_model::Pose;
 
 use crate::poses::{Jump, Origin, PoseSample, PoseTrack};
@@ -105,18 +105,19 @@ pub struct Cycles {
 
 impl Cycles {
     /// Result of a run with stated values: means and their errors, and no cycle.
-    pub(crate) fn told(told: &ToldRun, period_s: f64) -> Self {
-        let of = |value: &Option<ToldValue>| Statistics::told(value.as_ref(), told.cycles);
+    pub(crate) fn reported(reported: &ReportedResults, period_s: f64) -> Self {
+        let of =
+            |value: &Option<ReportedValue>| Statistics::reported(value.as_ref(), reported.cycles);
         Self {
             period_s,
             cycles: Vec::new(),
             left_out: Vec::new(),
-            x: of(&told.x),
-            y: of(&told.y),
-            rotation: of(&told.turn),
-            delta_y: of(&told.delta_y),
-            delta_theta: of(&told.delta_theta),
-            phase: Phase::Told,
+            x: of(&reported.x),
+            y: of(&reported.y),
+            rotation: of(&reported.turn),
+            delta_y: of(&reported.delta_y),
+            delta_theta: of(&reported.delta_theta),
+            phase: Phase::Reported,
             warnings: Vec::new(),
             heading: Harmonics::default(),
         }
@@ -125,7 +126,7 @@ impl Cycles {
     /// Number of cycles in the means; `None` if it is not stated.
     pub fn count(&self) -> Option<usize> {
         match self.phase {
-            Phase::Told => {
+            Phase::Reported => {
                 let counts = [self.x, self.delta_y, self.delta_theta].map(|s| s.count);
                 counts.into_iter().max().filter(|count| *count > 1)
             }

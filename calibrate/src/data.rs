@@ -58,7 +58,7 @@ pub struct CampaignData {
     /// The tracked runs that the campaign does not exclude, in its order.
     pub runs: Vec<RunData>,
     /// The gaits of runs whose results are stated, likewise.
-    pub told: Vec<AnyGait>,
+    pub reported_gaits: Vec<AnyGait>,
     /// Contradictions between link logs and campaign, each with its run's file.
     pub doubts: Vec<String>,
 }
@@ -100,8 +100,8 @@ impl CampaignData {
         };
         let mut data = Self::default();
         for run in campaign.included().map(|index| &campaign.runs[index]) {
-            if run.told.is_some() {
-                data.told.push(files.gait(run)?);
+            if run.reported.is_some() {
+                data.reported_gaits.push(files.gait(run)?);
             } else {
                 let (run, doubts) = files.run(run)?;
                 data.runs.push(run);

@@ -242,7 +242,7 @@ pub fn weigh_evidence(found: &CampaignFit, options: EvidenceOptions) -> Result<E
     let ask = |rectangle| Surface::new(&model, rectangle);
     let mut settled = problem.settle(problem.paper, ask).ok_or_else(nothing)?;
     let far = |a: [f64; 2], b: &[f64]| (a[0] - b[0]).abs() + (a[1] - b[1]).abs() > ELSEWHERE;
-    let best = problem.sought_widely(&model, &settled.2);
+    let best = problem.multi_start_optimum(&model, &settled.2);
     if let Some(best) = best.filter(|best| far(*best, &settled.2.at)) {
         settled = problem.settle(best, ask).ok_or_else(nothing)?;
     }
@@ -261,7 +261,7 @@ pub fn weigh_evidence(found: &CampaignFit, options: EvidenceOptions) -> Result<E
         sphere_radius: scale.natural(0, at[0]),
         chi: scale.natural(1, at[1]),
     };
-    let drawn: Vec<bootstrap::Drawn> = found
+    let drawn: Vec<bootstrap::RunDeviations> = found
         .runs
         .iter()
         .enumerate()

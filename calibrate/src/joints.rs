@@ -101,7 +101,7 @@ pub(crate) fn measure(
     };
     let known = !matches!(
         cycles.phase,
-        Phase::Heading | Phase::LogAndHeading | Phase::Told
+        Phase::Heading | Phase::LogAndHeading | Phase::Reported
     );
     let servo = |joint: usize, fitted: &curve::Fitted| {
         servo::of(fitted, |u| command(u)[joint], known.then_some(period))

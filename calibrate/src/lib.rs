@@ -5,7 +5,7 @@
 //!          (tracks)                 (poses)             (cycles)    (fit)
 //! ```
 //! If reflectors on the side links measure the joint angles, the model follows these instead of the command (`joints`).
-//! [`weigh_evidence`] computes, on demand, likelihood, profiles, ridge, bootstrap and outliers; [`fit_further`] fits nuisance
+//! [`weigh_evidence`] computes, on demand, likelihood, profiles, ridge, bootstrap and outliers; [`fit_nuisance`] fits nuisance
 //! parameters, [`assess`] judges if the result can be used, and [`advise`] proposes further runs. Lengths are metres, angles
 //! radians, times seconds. Nothing here opens a file, except [`CampaignData::load`] and
 //! [`load_run`], which read what the caller names. [`predict`] is the model's side of the fit, for anyone who wants to know
@@ -15,7 +15,7 @@
 //!
 //! ```
 //! use std::fmt::Write;
-//! use calibrate::{CampaignData, EvidenceOptions, FitOptions, NuisanceParameter, advise, amplitude_by_sway, assess, calibrate_campaign, fit_further};
+//! use calibrate::{CampaignData, EvidenceOptions, FitOptions, NuisanceParameter, advise, amplitude_by_sway, assess, calibrate_campaign, fit_nuisance};
 //! use calibrate::{other_gaits, predict, weigh_evidence};
 //! use swimmer_files::{AnyGait, Campaign, SwimmerFile};
 //!
@@ -52,7 +52,7 @@
 //! let assessment = assess(&found, Some(&evidence))?;
 //! assert_ne!(assessment.verdict.word(), "do not use", "{:?}", assessment.reasons);
 //! assert!(!advise(&campaign, &found)?.candidates.is_empty());
-//! let scale = fit_further(&found, &[NuisanceParameter::Scale])?;
+//! let scale = fit_nuisance(&found, &[NuisanceParameter::Scale])?;
 //! assert_eq!(scale.parameters.len(), 3);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -96,7 +96,7 @@ pub use fit::{
     CampaignFit, ExcludedRun, Fit, FitOptions, FitWarning, Intervals, RunResidual, c_t_form,
 };
 pub use joints::{Measured, MeasuredJoints, MeasuredServo, SideFollower, SideSighting};
-pub use nuisance::{FurtherFit, NuisanceParameter, fit_further};
+pub use nuisance::{NuisanceFit, NuisanceParameter, fit_nuisance};
 pub use poses::{
     Drift, End, FollowReport, FollowedPair, FrontRule, Jump, Origin, PairFollower, PoseError,
     PoseOptions, PoseSample, PoseTrack, PoseWarning, Sighting, Stretch, pose_of_pair, poses,

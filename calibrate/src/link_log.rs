@@ -78,13 +78,13 @@ impl Logged {
                 play.period_s, run.period_s
             ));
         }
-        if let Some([told, named]) = told_another(play, gait) {
+        if let Some([commanded, named]) = commanded_another(play, gait) {
             said.push(format!(
                 "the link log says otherwise: its joints were commanded up to {:.3}°, and {} turns them up to {:.3}°{}",
-                told.to_degrees(),
+                commanded.to_degrees(),
                 run.gait.readable(),
                 named.to_degrees(),
-                if (told - named).abs() < OFF {
+                if (commanded - named).abs() < OFF {
                     " the same way round or not: add or remove :cw"
                 } else {
                     ""
@@ -96,19 +96,19 @@ impl Logged {
 }
 
 /// The largest commanded and stated angles, if half of the commands do not belong to this gait.
-fn told_another(play: &Play, gait: &AnyGait) -> Option<[f64; 2]> {
+fn commanded_another(play: &Play, gait: &AnyGait) -> Option<[f64; 2]> {
     let named = |fraction: f64| -> [f64; 2] { gait.at(fraction).phi.into() };
     let largest = |angles: [f64; 2]| angles[0].abs().max(angles[1].abs());
-    let off = play.told.iter().map(|(fraction, told)| {
+    let off = play.setpoints.iter().map(|(fraction, commanded)| {
         let named = named(*fraction);
-        largest([told[0] - named[0], told[1] - named[1]])
+        largest([commanded[0] - named[0], commanded[1] - named[1]])
     });
     (median(off)? > OFF).then(|| {
-        play.told
+        play.setpoints
             .iter()
-            .fold([0.0, 0.0], |[a, b], (fraction, told)| {
+            .fold([0.0, 0.0], |[a, b], (fraction, commanded)| {
                 [
-                    f64::max(a, largest(*told)),
+                    f64::max(a, largest(*commanded)),
                     f64::max(b, largest(named(*fraction))),
                 ]
             })

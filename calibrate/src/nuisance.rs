@@ -127,7 +127,7 @@ pub struct FittedParameter {
 
 /// Warning about a fit of further parameters.
 #[derive(Debug, Clone, PartialEq)]
-pub enum FurtherWarning {
+pub enum NuisanceWarning {
     /// Two parameters that the data cannot distinguish.
     Alike {
         /// Their names.
@@ -161,7 +161,7 @@ pub enum FurtherWarning {
     },
 }
 
-impl std::fmt::Display for FurtherWarning {
+impl std::fmt::Display for NuisanceWarning {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Alike {
@@ -193,7 +193,7 @@ impl std::fmt::Display for FurtherWarning {
     }
 }
 
-impl Serialize for FurtherWarning {
+impl Serialize for NuisanceWarning {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(self)
     }
@@ -201,7 +201,7 @@ impl Serialize for FurtherWarning {
 
 /// r_s, χ and further parameters, by likelihood. Serialised with the keys of `swimmer calibrate --json`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct FurtherFit {
+pub struct NuisanceFit {
     /// r_s \[m\], χ, then the others.
     pub parameters: Vec<FittedParameter>,
     /// Level of the intervals.
@@ -216,17 +216,17 @@ pub struct FurtherFit {
     #[serde(skip)]
     pub swimmer: SwimmerFile,
     /// Warnings.
-    pub warnings: Vec<FurtherWarning>,
+    pub warnings: Vec<NuisanceWarning>,
 }
 
 /// Fits further parameters along with r_s and χ.
 ///
 /// # Errors
 /// [`FitError::Undetermined`] where the data say nothing about some combination of them.
-pub fn fit_further(
+pub fn fit_nuisance(
     found: &CampaignFit,
     further: &[NuisanceParameter],
-) -> Result<FurtherFit, FitError> {
+) -> Result<NuisanceFit, FitError> {
     let mut wanted = further.to_vec();
     wanted.sort_unstable();
     wanted.dedup();
@@ -320,7 +320,7 @@ fn summary(
     found: &Estimate,
     gain: f64,
     level: f64,
-) -> Option<FurtherFit> {
+) -> Option<NuisanceFit> {
     let at = &found.at;
     let mut parameters = Vec::with_capacity(at.len());
     let mut warnings = Vec::new();
@@ -329,9 +329,9 @@ fn summary(
         let natural = |value: f64| model.natural(*slot, value);
         let (from, to) = ((at[i] - half).max(low), (at[i] + half).min(high));
         if from <= low && to >= high {
-            warnings.push(FurtherWarning::Unbounded { name: slot.name() });
+            warnings.push(NuisanceWarning::Unbounded { name: slot.name() });
         } else if at[i] >= high || (at[i] <= low && low < 0.0) {
-            warnings.push(FurtherWarning::AtBound {
+            warnings.push(NuisanceWarning::AtBound {
                 name: slot.name(),
                 bound: natural(at[i]),
             });
@@ -351,7 +351,7 @@ fn summary(
         for j in 0..i {
             let correlation = correlation(i, j);
             if correlation.abs() > ALIKE {
-                warnings.push(FurtherWarning::Alike {
+                warnings.push(NuisanceWarning::Alike {
                     names: [model.parameters[j].name(), model.parameters[i].name()],
                     correlation,
                 });
@@ -360,17 +360,17 @@ fn summary(
     }
     let condition = condition(found)?;
     if condition > ILL_CONDITIONED {
-        warnings.push(FurtherWarning::IllConditioned { condition });
+        warnings.push(NuisanceWarning::IllConditioned { condition });
     }
     if count > 2 && gain < BY_CHANCE * (count - 2) as f64 {
-        warnings.push(FurtherWarning::NoBetter {
+        warnings.push(NuisanceWarning::NoBetter {
             gain,
             parameters: count - 2,
         });
     }
     let mut swimmer = model.file(at);
     swimmer = swimmer.fitted(swimmer.swimmer.sphere_radius, swimmer.swimmer.chi);
-    Some(FurtherFit {
+    Some(NuisanceFit {
         parameters,
         level,
         correlations: (0..count)
@@ -398,7 +398,7 @@ fn condition(found: &Estimate) -> Option<f64> {
     Some(singular.max() / singular.min())
 }
 
-impl FurtherFit {
+impl NuisanceFit {
     /// A parameter by its name.
     pub fn parameter(&self, name: &str) -> Option<&FittedParameter> {
         self.parameters.iter().find(|p| p.name == name)

@@ -50,8 +50,8 @@ pub struct RunResult {
 
 impl RunResult {
     /// Returns `true` if results were stated, and there is no track.
-    pub fn is_told(&self) -> bool {
-        self.cycles.phase == Phase::Told
+    pub fn is_reported(&self) -> bool {
+        self.cycles.phase == Phase::Reported
     }
 }
 
@@ -97,7 +97,7 @@ pub(crate) struct Run<'a> {
     poses: PoseTrack,
     pub(crate) clock: Clock,
     /// Commanded gait, by which its cycles are cut.
-    told: Played,
+    commanded: Played,
     joints: Option<MeasuredJoints>,
 }
 
@@ -123,14 +123,14 @@ impl<'a> Run<'a> {
                 cause,
             }
         })?;
-        let told = Played::commanded(&data.gait, swimmer.servo.as_ref(), data.period_s);
+        let commanded = Played::commanded(&data.gait, swimmer.servo.as_ref(), data.period_s);
         Ok(Self {
             data,
             index,
             reflectors,
             poses,
             clock,
-            told: told.map_err(|cause| CalibrateError::Prediction {
+            commanded: commanded.map_err(|cause| CalibrateError::Prediction {
                 file: file(),
                 cause,
             })?,
@@ -141,11 +141,11 @@ impl<'a> Run<'a> {
     /// Joint path for the model: the measured angles of the last cycles, else the stated gait.
     pub(crate) fn played(&self) -> Played {
         match &self.joints {
-            None => self.told.clone(),
+            None => self.commanded.clone(),
             Some(joints) => Played {
                 path: joints.path.clone(),
                 sides: Some(joints.sides),
-                ..self.told.clone()
+                ..self.commanded.clone()
             },
         }
     }
@@ -199,7 +199,7 @@ impl<'a> Run<'a> {
         swimmer: &Swimmer<f64>,
         projection: &Projection,
     ) -> Result<f64, CalibrateError> {
-        let (_, heading) = self.told.path.predict(swimmer, projection)?;
+        let (_, heading) = self.commanded.path.predict(swimmer, projection)?;
         self.clock
             .start(&self.poses, &heading)
             .map_err(|cause| CalibrateError::Cycles {
@@ -225,7 +225,7 @@ impl<'a> Run<'a> {
         swimmer: &Swimmer<f64>,
         projection: &Projection,
     ) -> Result<Cycles, CalibrateError> {
-        let (predicted, heading) = self.told.path.predict(swimmer, projection)?;
+        let (predicted, heading) = self.commanded.path.predict(swimmer, projection)?;
         let mut cycles = self.cycles(start_s)?;
         if self.poses.front == FrontRule::Travel && predicted.x_m * cycles.x.mean < 0.0 {
             self.poses.turn_round(&self.reflectors);
@@ -256,9 +256,9 @@ impl<'a> Run<'a> {
         let mut warnings: Vec<String> = reader.chain(poses).chain(own).collect();
         let contested =
             |warning: &PoseWarning| matches!(warning, PoseWarning::LabelsContested { .. });
-        let told = self.poses.warnings.iter().any(contested);
-        if self.poses.front == FrontRule::Travel && !told {
-            warnings.push("no label tells the front reflector from the back one; the direction of travel was taken for forwards".to_owned());
+        let commanded = self.poses.warnings.iter().any(contested);
+        if self.poses.front == FrontRule::Travel && !commanded {
+            warnings.push("no label distinguishes the front reflector from the back one; the direction of travel was taken as forwards".to_owned());
         }
         if self.reflectors.sides.is_some() && self.joints.is_none() {
             warnings.push("the reflectors on the side links were not seen in all parts of the cycle: the angles are the commanded ones".to_owned());

@@ -23,7 +23,7 @@ pub struct OtherGait {
     /// The amplitude that it sways like \[rad\].
     pub sways_like_rad: f64,
     /// The amplitude that the campaign says \[rad\].
-    pub said_rad: f64,
+    pub stated_rad: f64,
 }
 
 impl fmt::Display for OtherGait {
@@ -32,7 +32,7 @@ impl fmt::Display for OtherGait {
             f,
             "it sways like a gait of {:.3}°, not of {:.3}°, compared with the other runs: correct its `gait`, or leave it out (`exclude = \"why\"`)",
             self.sways_like_rad.to_degrees(),
-            self.said_rad.to_degrees()
+            self.stated_rad.to_degrees()
         )
     }
 }
@@ -62,10 +62,10 @@ pub fn other_gaits(
         .into_iter()
         .filter(|(.., factor)| off(*factor).abs() > OFF_AMONG_OTHERS);
     unlike
-        .map(|(index, said_rad, factor)| OtherGait {
+        .map(|(index, stated_rad, factor)| OtherGait {
             index,
-            sways_like_rad: said_rad * factor / common,
-            said_rad,
+            sways_like_rad: stated_rad * factor / common,
+            stated_rad,
         })
         .collect()
 }

@@ -7,7 +7,7 @@ use crate::arguments::{length, positive_angle};
 
 /// Bounds that hold all round a gait.
 #[derive(Debug, Clone, Copy, clap::Args)]
-pub(crate) struct WholeBounds {
+pub(crate) struct CycleBounds {
     /// No joint may turn further than this, either way
     #[arg(long, value_name = "ANGLE", value_parser = positive_angle)]
     max_angle: Option<f64>,
@@ -74,7 +74,7 @@ fn of_kind(
     names
 }
 
-impl Given for WholeBounds {
+impl Given for CycleBounds {
     fn given(&self, kind: Option<ArcKind>) -> Vec<&'static str> {
         let own = [(self.max_angle.is_some(), ArcKind::Upper, "--max-angle")];
         of_kind(own.into_iter().chain(self.links.given()), kind)
@@ -92,7 +92,7 @@ impl Given for QuarterBounds {
     }
 }
 
-impl WholeBounds {
+impl CycleBounds {
     /// The limits of the robot alone (`--playable`).
     pub(crate) fn for_playing() -> Self {
         Self {
@@ -128,8 +128,8 @@ impl QuarterBounds {
     }
 }
 
-impl From<WholeBounds> for BoundsRequest {
-    fn from(given: WholeBounds) -> Self {
+impl From<CycleBounds> for BoundsRequest {
+    fn from(given: CycleBounds) -> Self {
         Self {
             max_angle: given.max_angle,
             ..given.links.into()

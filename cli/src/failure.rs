@@ -41,7 +41,7 @@ impl Failure {
         Self::Tried(match details {
             None => said,
             Some(details) if verbose() => format!("{said}\n  {details}"),
-            Some(_) => format!("{said} (--verbose says what was seen)"),
+            Some(_) => format!("{said} (--verbose prints details)"),
         })
     }
 

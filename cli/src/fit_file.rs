@@ -43,8 +43,8 @@ impl FittedParameters {
         let row = self.correlations.get(place("r_s")?)?;
         if (gain.value - 1.0).abs() > 1e-3 {
             aside(&format!(
-                "warning: the fit says that the servos turn {:.4} times the commanded angle; the design takes slope_rad_per_us of the \
-                 swimmer file as put right by that",
+                "warning: the fit says that the servos turn {:.4} times the commanded angle; the design assumes that slope_rad_per_us of the \
+                 swimmer file was corrected by this factor",
                 gain.value
             ));
         }

@@ -130,8 +130,7 @@ fn give_up() {
     drafts.remove();
     let output = OUTPUT.get().copied().unwrap_or(Output { json: false });
     output.failure(&Failure::Tried(
-        "interrupted: what was half-written is removed and nothing was kept; run it again"
-            .to_owned(),
+        "interrupted: incomplete files are removed and nothing was kept; run it again".to_owned(),
     ));
     // The command may have written on meanwhile.
     drafts.remove();

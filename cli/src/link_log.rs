@@ -24,7 +24,7 @@ pub(crate) struct Recorder(Arc<Mutex<Recording>>);
 struct Recording {
     path: PathBuf,
     /// `true` to print its path at the end.
-    told: bool,
+    announced: bool,
     writer: Option<LinkLogWriter>,
     frames: u64,
     failed: Option<LinkLogError>,
@@ -41,7 +41,7 @@ impl Recorder {
         may_be_written(path)?;
         Ok(Self(Arc::new(Mutex::new(Recording {
             path: path.to_path_buf(),
-            told: false,
+            announced: false,
             writer: Some(LinkLogWriter::create(path)?),
             frames: 0,
             failed: None,
@@ -51,8 +51,8 @@ impl Recorder {
     }
 
     /// The same, which says where it is at its end: for a log that outlasts the command.
-    pub(crate) fn told(self) -> Self {
-        locked(&self.0).told = true;
+    pub(crate) fn announced(self) -> Self {
+        locked(&self.0).announced = true;
         self
     }
 
@@ -71,7 +71,7 @@ impl Recorder {
         let mut recording = locked(&self.0);
         let finished = recording.finish();
         finished.map_err(Failure::from)?;
-        if recording.told {
+        if recording.announced {
             recording.tell();
         }
         Ok(recording.frames)
@@ -87,7 +87,7 @@ impl Drop for Recorder {
         }
         if recording.writer.is_some() {
             match recording.finish() {
-                Ok(()) if recording.told => {
+                Ok(()) if recording.announced => {
                     recording.tell();
                 }
                 Ok(()) => {}
@@ -102,7 +102,7 @@ impl Recording {
         let Some(writer) = &mut self.writer else {
             return;
         };
-        let told = match (frame.direction, message(frame.bytes)) {
+        let reported_us = match (frame.direction, message(frame.bytes)) {
             (Direction::ToHost, Some(Message::Pong(pong))) => {
                 self.samples.push(&pong, frame.at);
                 self.clock = self.samples.fit();
@@ -119,7 +119,7 @@ impl Recording {
         let frame = LinkFrame {
             direction: frame.direction,
             host_time_ns: u64::try_from((epoch + frame.at).as_nanos()).unwrap_or(u64::MAX),
-            robot_time_us: told.or(estimated),
+            robot_time_us: reported_us.or(estimated),
             bytes: frame.bytes.to_vec(),
         };
         if self.failed.is_none() {
@@ -175,7 +175,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let left = || std::fs::read_dir(folder.path()).unwrap().count();
         let path = folder.path().join("z.mcap");
-        drop(Recorder::create(&path).unwrap().told());
+        drop(Recorder::create(&path).unwrap().announced());
         assert_eq!(left(), 0);
         let recorder = Recorder::create(&path).unwrap();
         recorder.sink(Duration::ZERO)(TracedFrame {

@@ -14,14 +14,14 @@ pub(crate) use operations::robot_limits::PERIOD_S;
 
 /// Rate limit of each servo \[rad/s\]: the given one (a single one is that of both), or the robot's own for playable gaits.
 /// Returns `None` without either.
-pub(crate) fn servo_rates(told: &[f64], playable: bool, file: &SwimmerFile) -> Option<[f64; 2]> {
+pub(crate) fn servo_rates(rates: &[f64], playable: bool, file: &SwimmerFile) -> Option<[f64; 2]> {
     let own = if playable {
         file.servo.unwrap_or_default().max_rate
     } else {
         f64::INFINITY
     };
-    let first = told.first().copied().unwrap_or(f64::INFINITY);
-    let second = told.get(1).copied().unwrap_or(first);
+    let first = rates.first().copied().unwrap_or(f64::INFINITY);
+    let second = rates.get(1).copied().unwrap_or(first);
     let rates = [first.min(own), second.min(own)];
     rates.iter().all(|rate| rate.is_finite()).then_some(rates)
 }
@@ -52,8 +52,8 @@ impl PlayedSpeed {
         } else {
             period
         };
-        let told = at(period_s)?;
-        let (designed, as_played) = told.ends()?;
+        let rates = at(period_s)?;
+        let (designed, as_played) = rates.ends()?;
         let speed_m_per_s = as_played.displacement.norm() / period_s;
         Some(Self {
             period_s,

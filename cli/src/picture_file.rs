@@ -24,11 +24,17 @@ impl Kind {
     pub(crate) fn of(path: &Path, kinds: &[Self]) -> Outcome<Self> {
         let ending = path.extension().and_then(|ending| ending.to_str());
         let ending = ending.unwrap_or_default().to_ascii_lowercase();
-        let found = kinds.iter().find(|kind| kind.told().0 == ending);
+        let found = kinds.iter().find(|kind| kind.ending_and_name().0 == ending);
         found.copied().ok_or_else(|| {
             let known: Vec<String> = kinds
                 .iter()
-                .map(|kind| format!(".{} for {}", kind.told().0, kind.told().1))
+                .map(|kind| {
+                    format!(
+                        ".{} for {}",
+                        kind.ending_and_name().0,
+                        kind.ending_and_name().1
+                    )
+                })
                 .collect();
             Failure::BadInput(format!(
                 "cannot tell from `{}` what to write: end the name in {}",
@@ -39,7 +45,7 @@ impl Kind {
     }
 
     /// Its ending and what one gets.
-    fn told(self) -> (&'static str, &'static str) {
+    fn ending_and_name(self) -> (&'static str, &'static str) {
         match self {
             Self::Svg => ("svg", "a figure"),
             Self::Png => ("png", "a figure in pixels"),

@@ -32,7 +32,7 @@ impl Progress {
     }
 
     /// A bar of one whole, whose share is set with [`Self::at_share`].
-    pub(crate) fn of_a_whole(what: &str) -> Self {
+    pub(crate) fn with_share(what: &str) -> Self {
         let progress = Self::drawn(ProgressBar::new(1000), "{percent:>3} %", left);
         progress.doing(what);
         progress
@@ -111,10 +111,11 @@ impl Drop for Progress {
 /// Width of the terminal on standard error; a default if it is unknown.
 fn columns() -> u16 {
     #[cfg(unix)]
-    let told = rustix::termios::tcgetwinsize(std::io::stderr()).map(|size| size.ws_col);
+    let width = rustix::termios::tcgetwinsize(std::io::stderr()).map(|size| size.ws_col);
     #[cfg(not(unix))]
-    let told = crossterm::terminal::size().map(|(columns, _)| columns);
-    told.ok()
+    let width = crossterm::terminal::size().map(|(columns, _)| columns);
+    width
+        .ok()
         .filter(|columns| *columns > 0)
         .unwrap_or(ROOM_FOR_A_BAR)
 }

@@ -112,16 +112,16 @@ impl PoseFilter {
     }
 
     /// Returns `true` while the robot is found: a reflector was seen within the longest blank.
-    pub fn is_found(&self) -> bool {
+    pub fn is_tracked(&self) -> bool {
         self.estimate.is_some()
     }
 
     /// Returns `true` if a rigid body, the names or the heading have settled which end is the front.
     pub fn knows_front(&self) -> bool {
         if self.options.reflectors.body.is_some() {
-            return self.is_found();
+            return self.is_tracked();
         }
-        self.is_found() && self.has_names() && self.order.is_settled()
+        self.is_tracked() && self.has_names() && self.order.is_settled()
     }
 
     /// Pose at the last frame; `None` if the robot is not found.

@@ -75,7 +75,7 @@ impl Control {
         self.servos.set(output.pulses_ns);
         self.led.set(output.led);
         self.watchdog.feed();
-        button::may_be_looked_at(output.pulses_ns.is_none());
+        button::allow_sampling(output.pulses_ns.is_none());
         retained_ram::keep_starts(output.starts);
         if output.storage_wanted || output.boot_loader {
             self.while_stopped(&output);

@@ -43,7 +43,7 @@ pub(crate) mod button {
     }
 
     /// Allows or forbids sampling. Called at each tick.
-    pub(crate) fn may_be_looked_at(pulses_are_off: bool) {
+    pub(crate) fn allow_sampling(pulses_are_off: bool) {
         MAY_LOOK.store(pulses_are_off, Ordering::Relaxed);
     }
 
@@ -68,5 +68,5 @@ pub(crate) mod button {
         false
     }
 
-    pub(crate) const fn may_be_looked_at(_: bool) {}
+    pub(crate) const fn allow_sampling(_: bool) {}
 }

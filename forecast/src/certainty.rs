@@ -68,14 +68,15 @@ mod tests {
             period: 30.0,
             knots: 128,
         };
-        let told = forecast(&model, &AnyGait::circle(1.2), &played).unwrap();
+        let predicted = forecast(&model, &AnyGait::circle(1.2), &played).unwrap();
         let Swimmer {
             sphere_radius, chi, ..
         } = *model.swimmer();
         let error = |by_radius: f64, by_chi: f64, correlation| {
             let around = |value: f64, by: f64| [value - by, value + by];
             let intervals = (around(sphere_radius, by_radius), around(chi, by_chi));
-            told.displacement_error(model.swimmer(), intervals.0, intervals.1, correlation)
+            predicted
+                .displacement_error(model.swimmer(), intervals.0, intervals.1, correlation)
                 .unwrap()
         };
         assert!(error(0.0, 0.0, None) < 1e-15);

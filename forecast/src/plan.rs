@@ -223,7 +223,7 @@ impl Family {
 /// [`PlanError`].
 ///
 /// ```
-/// use forecast::{Errand, Family, PlanError, Servos, plan};
+/// use forecast::{PlanRequest, Family, PlanError, Servos, plan};
 /// use nalgebra::Vector2;
 /// use swimmer_files::{AnyGait, ServoFile};
 /// use swimmer_model::{Model, Pose, Swimmer};
@@ -233,8 +233,8 @@ impl Family {
 /// let gaits = [0.8, 1.0, 1.2].map(|amplitude| (AnyGait::circle(amplitude), 10.0));
 /// let to = Vector2::new(0.2, 0.1);
 /// let servos = Servos::on_the_robot(ServoFile::default());
-/// let errand = Errand { from: Pose::identity(), to, heading: None, tank: None, margin: 0.005, servos };
-/// let refused = plan(&model, &Family { gaits, mirrored: false }, &errand).unwrap_err();
+/// let request = PlanRequest { from: Pose::identity(), to, heading: None, tank: None, margin: 0.005, servos };
+/// let refused = plan(&model, &Family { gaits, mirrored: false }, &request).unwrap_err();
 /// assert!(matches!(refused, PlanError::Apart { apart } if (apart - 0.4).abs() < 1e-12));
 /// ```
 pub fn plan(model: &Model<f64>, family: &Family, request: &PlanRequest) -> Result<Plan, PlanError> {

@@ -212,12 +212,12 @@ mod tests {
             let model = Model::new(&swimmer).unwrap();
             let batch = Batch::of(&model);
             let phi: Vec<Vector2<f64>> = shapes.iter().map(|&(a, b)| Vector2::new(a, b)).collect();
-            let mut told = 0;
+            let mut reported = 0;
             batch.each(Second, phi.iter().copied(), |at, many| {
-                assert_eq!((at, many), (told, model.second_derivatives(&phi[at])));
-                told += 1;
+                assert_eq!((at, many), (reported, model.second_derivatives(&phi[at])));
+                reported += 1;
             });
-            assert_eq!(told, phi.len());
+            assert_eq!(reported, phi.len());
             batch.each(First, phi.iter().copied(), |at, many| {
                 assert_eq!(many, model.first_derivatives(&phi[at]));
             });

@@ -27,12 +27,12 @@ pub struct Check {
     #[serde(skip)]
     pub uncertainty: f64,
     #[serde(skip)]
-    pub(crate) seen_by: SeenBy,
+    pub(crate) depends_on: Dependence,
 }
 
 /// Data on which a condition depends, which determines the uncertainty due to the samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum SeenBy {
+pub(crate) enum Dependence {
     /// The curve through the samples: both their spacing and their rounding matter.
     Curve,
     /// The individual samples: only rounding matters.
@@ -65,8 +65,8 @@ impl Verdict {
 
 impl Check {
     /// Sets the data on which the condition depends.
-    pub(crate) fn seen_by(self, seen_by: SeenBy) -> Self {
-        Self { seen_by, ..self }
+    pub(crate) fn depends_on(self, depends_on: Dependence) -> Self {
+        Self { depends_on, ..self }
     }
 
     /// Returns `true` if the condition is violated by more than its uncertainty.
@@ -87,11 +87,11 @@ pub struct Certificate {
 /// JSON form of all outputs: pass, verdict, conditions.
 impl Serialize for Certificate {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut told = serializer.serialize_struct("Certificate", 3)?;
-        told.serialize_field("pass", &self.pass())?;
-        told.serialize_field("verdict", self.verdict().word())?;
-        told.serialize_field("checks", &self.checks)?;
-        told.end()
+        let mut fields = serializer.serialize_struct("Certificate", 3)?;
+        fields.serialize_field("pass", &self.pass())?;
+        fields.serialize_field("verdict", self.verdict().word())?;
+        fields.serialize_field("checks", &self.checks)?;
+        fields.end()
     }
 }
 
@@ -156,7 +156,7 @@ impl Certificate {
     /// Returns `true` if the spacing of the samples is too coarse for the conditions.
     pub(crate) fn is_too_coarse(&self) -> bool {
         let mut checks = self.checks.iter();
-        checks.any(|check| check.seen_by == SeenBy::Spacing && !check.pass)
+        checks.any(|check| check.depends_on == Dependence::Spacing && !check.pass)
     }
 
     /// Sets the uncertainty of each violated condition.

@@ -28,7 +28,7 @@ use swimmer_files::{AnyGait, Bounds, GaitFile, Objective};
 use swimmer_model::{InvalidSamples, InvalidSwimmer, Model, Swimmer, Tolerance, swim};
 
 use crate::certificate::{
-    Certificate, Check, Condition, SHARE, SWUM_AGAIN, SeenBy, Verdict, turning_number,
+    Certificate, Check, Condition, Dependence, SHARE, SWUM_AGAIN, Verdict, turning_number,
 };
 use crate::cycle::Cycle;
 use crate::optimal_gait::OptimalGait;
@@ -67,7 +67,7 @@ pub enum CertifyError {
     },
     /// Nothing is known of what the gait shall be optimal for.
     #[error(
-        "cannot certify a gait without knowing what it shall be optimal for: name displacement, efficiency, turning, sideways or speed"
+        "cannot certify a gait without an objective: name displacement, efficiency, turning, sideways or speed"
     )]
     NoObjective,
 }
@@ -244,7 +244,7 @@ pub(crate) fn decided(
 /// Largest difference of the slopes of degree eight and six along an efficiency cycle, over the tolerance of [`certify`].
 pub(crate) fn slopes_open(cycle: &Cycle) -> f64 {
     let file = cycle.file(Bounds::default());
-    let (grid, shapes) = Grid::new(&file, &grid::told_by_arcs(&file));
+    let (grid, shapes) = Grid::new(&file, &grid::along_arcs(&file));
     let [fine, coarse] = [Degree::Fine, Degree::Coarse].map(|degree| grid.slopes(&shapes, degree));
     let slopes = fine.iter().zip(&coarse);
     let apart = slopes.map(|(fine, coarse)| (fine - coarse).norm() / fine.norm());
@@ -262,7 +262,7 @@ fn sampling(objective: Objective, open: Openness) -> [Check; 2] {
         Condition::SlopesKnown.within(open.slope, coarsest),
         Condition::PosesKnown.check(open.pose),
     ]
-    .map(|check| check.seen_by(SeenBy::Spacing))
+    .map(|check| check.depends_on(Dependence::Spacing))
 }
 
 /// [`certify`] for a counter-clockwise gait, with its curve and its displacement.

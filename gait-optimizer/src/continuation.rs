@@ -324,6 +324,6 @@ fn all<F: Family>(
 /// Largest residual among the conditions that a gait of the branch is solved from.
 fn residual(certificate: &Certificate) -> f64 {
     let residuals = [Condition::ShootingResidual, Condition::FinalLambda4];
-    let mut told = residuals.into_iter().filter_map(|of| certificate.value(of));
-    told.next().unwrap_or(f64::NAN)
+    let mut residual = residuals.into_iter().filter_map(|of| certificate.value(of));
+    residual.next().unwrap_or(f64::NAN)
 }

@@ -11,7 +11,7 @@ use std::fmt;
 
 use crate::region::Region;
 use best::{best, candidates};
-pub use error::{DisplacementError, Fates};
+pub use error::{DisplacementError, ExtremalOutcomes};
 pub use near::displacement_near;
 use search::{Candidate, SCAN_POINTS};
 use swimmer_files::{Bounds, Objective};

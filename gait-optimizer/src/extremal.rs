@@ -60,7 +60,7 @@ pub(crate) enum Unpolished {
     Shooting { arcs: usize, reason: Unsolved },
     #[error("the arcs found cannot be followed again")]
     Trace,
-    #[error("{MOST_STRUCTURES} arc structures were tried and each asked for another one")]
+    #[error("{MOST_STRUCTURES} arc structures were tried and each led to another one")]
     Structure,
 }
 

@@ -104,7 +104,8 @@ pub use continuation::{
 };
 pub use cycle::Arc;
 pub use displacement::{
-    DisplacementError, DisplacementProblem, Fates, Heading, displacement, displacement_near,
+    DisplacementError, DisplacementProblem, ExtremalOutcomes, Heading, displacement,
+    displacement_near,
 };
 pub use efficiency::{
     Branch, Direct, EfficiencyError, EfficiencyProblem, EfficiencySeed, Method, ReachedBounds,

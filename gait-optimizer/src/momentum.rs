@@ -65,7 +65,7 @@ impl Momentum {
     }
 
     /// Transforms the multipliers to a frame with its origin at a pose.
-    pub(crate) fn seen_from(&self, pose: &[f64; 3]) -> Self {
+    pub(crate) fn in_frame_of(&self, pose: &[f64; 3]) -> Self {
         let body = self.at(pose);
         Self {
             p: body.xy(),

@@ -330,7 +330,7 @@ impl Brain {
         if self.resets.lasted() {
             self.clear_starts();
         }
-        self.bench.look(now_us, inputs.present);
+        self.bench.sample(now_us, inputs.present);
         self.battery_stops =
             self.battery
                 .measure(now_us, inputs.battery_mv, self.limits.battery_limit_mv);

@@ -128,10 +128,10 @@ mod tests {
     proptest! {
         #[test]
         fn any_text_comes_back_as_far_as_it_fits(file in "\\PC{0,80}", line: u32, message in "\\PC{0,200}") {
-            let told = CrashNote::panicked(&file, line, &message).message();
+            let message_text = CrashNote::panicked(&file, line, &message).message();
             let whole = format!(":{line}: {message}");
-            let shown = told.find(&whole[..whole.floor_char_boundary(9)]);
-            prop_assert!(shown.is_some() || told.len() + 4 > ROOM, "{told}");
+            let shown = message_text.find(&whole[..whole.floor_char_boundary(9)]);
+            prop_assert!(shown.is_some() || message_text.len() + 4 > ROOM, "{message_text}");
         }
 
         /// Random memory is no message, and neither is a message with a flipped bit.

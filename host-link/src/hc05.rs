@@ -13,7 +13,7 @@ use std::time::Duration;
 use crate::Port;
 
 pub use dialogue::{Action, Dialogue};
-pub use error::{Hc05Error, WantedError};
+pub use error::{Hc05Error, ModuleSettingsError};
 
 /// Speed of the AT mode if KEY was held at power-on \[baud\].
 pub const AT_BAUD: u32 = 38_400;
@@ -24,32 +24,36 @@ const MAX_NAME: usize = 31;
 
 /// Requested settings of the module; `None` leaves a setting unchanged.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Wanted {
+pub struct ModuleSettings {
     name: Option<String>,
     pin: Option<String>,
     baud: u32,
 }
 
-impl Wanted {
+impl ModuleSettings {
     /// Validates a speed (one of [`BAUDS`]), a name of 1 to 31 printable ASCII characters and a PIN of 4 to 16 digits.
     ///
     /// # Errors
-    /// [`WantedError`] if the module would refuse a value.
-    pub fn new(baud: u32, name: Option<String>, pin: Option<String>) -> Result<Self, WantedError> {
+    /// [`ModuleSettingsError`] if the module would refuse a value.
+    pub fn new(
+        baud: u32,
+        name: Option<String>,
+        pin: Option<String>,
+    ) -> Result<Self, ModuleSettingsError> {
         if !BAUDS.contains(&baud) {
-            return Err(WantedError::Baud { baud });
+            return Err(ModuleSettingsError::Baud { baud });
         }
         // A quote or a comma ends a name on some modules and is part of it on others.
         let plain = |c: char| (c.is_ascii_graphic() || c == ' ') && c != '"' && c != ',';
         if let Some(name) = &name
             && !((1..=MAX_NAME).contains(&name.len()) && name.chars().all(plain))
         {
-            return Err(WantedError::Name(name.clone()));
+            return Err(ModuleSettingsError::Name(name.clone()));
         }
         if let Some(pin) = &pin
             && !((4..=16).contains(&pin.len()) && pin.chars().all(|c| c.is_ascii_digit()))
         {
-            return Err(WantedError::Pin(pin.clone()));
+            return Err(ModuleSettingsError::Pin(pin.clone()));
         }
         Ok(Self { name, pin, baud })
     }
@@ -140,7 +144,7 @@ pub struct Outcome {
 /// [`Hc05Error`], with one variant per fault at the bench.
 pub fn converse(
     port: &mut impl Port,
-    wanted: &Wanted,
+    wanted: &ModuleSettings,
     only_check: bool,
 ) -> Result<Outcome, Hc05Error> {
     let mut dialogue = Dialogue::new(wanted.clone(), only_check);
@@ -170,19 +174,19 @@ mod tests {
 
     #[test]
     fn what_no_module_takes_is_refused_before_anything_is_sent() {
-        let with = |name: &str| Wanted::new(115_200, Some(name.to_owned()), None);
+        let with = |name: &str| ModuleSettings::new(115_200, Some(name.to_owned()), None);
         assert!(with("swimmer 1").is_ok() && with(&"x".repeat(31)).is_ok());
         for bad in ["", "a\"b", "a,b", "a\r\nAT+ORGL", "näme", &"x".repeat(32)] {
-            assert_eq!(with(bad), Err(WantedError::Name(bad.to_owned())));
+            assert_eq!(with(bad), Err(ModuleSettingsError::Name(bad.to_owned())));
         }
-        let pin = |pin: &str| Wanted::new(115_200, None, Some(pin.to_owned()));
+        let pin = |pin: &str| ModuleSettings::new(115_200, None, Some(pin.to_owned()));
         assert!(pin("1234").is_ok() && pin("1234567890123456").is_ok());
         for bad in ["", "123", "12a4", "12345678901234567"] {
-            assert_eq!(pin(bad), Err(WantedError::Pin(bad.to_owned())));
+            assert_eq!(pin(bad), Err(ModuleSettingsError::Pin(bad.to_owned())));
         }
         assert_eq!(
-            Wanted::new(115_201, None, None),
-            Err(WantedError::Baud { baud: 115_201 })
+            ModuleSettings::new(115_201, None, None),
+            Err(ModuleSettingsError::Baud { baud: 115_201 })
         );
     }
 }

@@ -5,11 +5,11 @@
 //!
 //! Ports of the operating system are not compiled for WebAssembly.
 
-#[cfg(unix)]
-mod beside;
 mod frames;
 #[cfg(not(target_family = "wasm"))]
 mod listed;
+#[cfg(unix)]
+mod occupied;
 #[cfg(unix)]
 mod pty;
 mod send_queue;
@@ -25,11 +25,11 @@ mod wire;
 use std::io;
 use std::time::Duration;
 
-#[cfg(unix)]
-pub use beside::BesidePort;
 pub(crate) use frames::FrameCutter;
 #[cfg(not(target_family = "wasm"))]
 pub use listed::{ListedPort, serial_ports};
+#[cfg(unix)]
+pub use occupied::OccupiedPort;
 #[cfg(unix)]
 pub use pty::{PtyError, PtyPort};
 pub use send_queue::SendQueue;

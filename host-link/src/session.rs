@@ -109,7 +109,7 @@ pub struct Session {
     beats: Beats,
     last_heard: Duration,
     /// Latest telemetry of this session.
-    told: Option<Telemetry>,
+    latest_telemetry: Option<Telemetry>,
     /// Time at which the line has sent the chunks so far.
     line_free: Duration,
     /// No new request before this time: the robot is busy.
@@ -146,7 +146,7 @@ impl Session {
             clock: ClockSamples::default(),
             beats: Beats::default(),
             last_heard: Duration::ZERO,
-            told: None,
+            latest_telemetry: None,
             line_free: Duration::ZERO,
             hold_until: Duration::ZERO,
             busy: 0,

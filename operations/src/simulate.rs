@@ -93,7 +93,7 @@ pub fn run(subject: &Subject, options: &Options, context: &mut Context) -> Resul
     }
     if options.played.is_some() && !file.swimmer.is_viscous() {
         return Err(Error::refused(format!(
-            "`{}` is not in a viscous fluid, where the robot swims: leave out what the robot plays",
+            "`{}` is not in a viscous fluid, where the robot swims: leave out the forecast of its play",
             file.name
         )));
     }

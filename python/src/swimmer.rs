@@ -267,20 +267,20 @@ impl Swimmer {
     /// the last with one number or with {"middle": …, "front": …, "back": …}.
     #[getter]
     fn c_t<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let told = PyDict::new(py);
+        let fields = PyDict::new(py);
         match self.file.swimmer.tangential_drag {
-            TangentialDrag::LogAspect(value) => told.set_item("log_aspect", value)?,
-            TangentialDrag::HalfThickness(value) => told.set_item("half_thickness", value)?,
-            TangentialDrag::OverViscosity(value) => told.set_item("over_viscosity", value)?,
+            TangentialDrag::LogAspect(value) => fields.set_item("log_aspect", value)?,
+            TangentialDrag::HalfThickness(value) => fields.set_item("half_thickness", value)?,
+            TangentialDrag::OverViscosity(value) => fields.set_item("over_viscosity", value)?,
             TangentialDrag::PerLink(values) => {
                 let links = PyDict::new(py);
                 links.set_item("middle", values.middle)?;
                 links.set_item("front", values.front)?;
                 links.set_item("back", values.back)?;
-                told.set_item("over_viscosity", links)?;
+                fields.set_item("over_viscosity", links)?;
             }
         }
-        Ok(told)
+        Ok(fields)
     }
 
     /// Medium of the links: "viscous", "perfect" or "wheels".

@@ -50,7 +50,7 @@ def test_fractions_and_corners() -> None:
         ({"phi": circle(9), "u": [0.0, 0.5]}, "one for each"),
         ({"phi": circle(9), "u": np.arange(9)[::-1] / 9}, "must be 0"),
         ({"phi": circle(9), "u": np.linspace(0, 1, 9)}, "does not close"),
-        ({"phi": circle(9), "corners": [0.01]}, "none of the samples"),
+        ({"phi": circle(9), "corners": [0.01]}, "no sample has the u"),
     ],
 )
 def test_what_is_no_gait(arguments: dict[str, Any], sentence: str) -> None:

@@ -88,12 +88,12 @@ fn written(
     file: &mut BufWriter<File>,
     merged: &mut Merged,
 ) -> Result<(), ParquetError> {
-    let told = |key: &str, value: String| KeyValue::new(key.to_owned(), value);
+    let metadata = |key: &str, value: String| KeyValue::new(key.to_owned(), value);
     let properties = WriterProperties::builder()
         .set_created_by(format!("swimmer {}", env!("CARGO_PKG_VERSION")))
         .set_key_value_metadata(Some(vec![
-            told("swimmer-sweep-plan-sha256", plan.hash()),
-            told("swimmer-sweep-plan", plan.text().to_owned()),
+            metadata("swimmer-sweep-plan-sha256", plan.hash()),
+            metadata("swimmer-sweep-plan", plan.text().to_owned()),
         ]))
         .build();
     let schema = Arc::new(schema(plan)?);

@@ -49,12 +49,12 @@ fn head(plan: &Plan, block: u64) -> Vec<u8> {
 /// Reads the rows of a block. Returns `None` if its part is missing or incomplete.
 pub(crate) fn read(plan: &Plan, folder: &Path, block: u64) -> Option<Vec<Row>> {
     let bytes = fs::read(path(folder, block)).ok()?;
-    let (told, hash) = bytes.split_at_checked(bytes.len().checked_sub(HASH)?)?;
-    if Sha256::digest(told).as_slice() != hash {
+    let (content, hash) = bytes.split_at_checked(bytes.len().checked_sub(HASH)?)?;
+    if Sha256::digest(content).as_slice() != hash {
         return None;
     }
     let rows: Vec<Row> =
-        postcard::from_bytes(told.strip_prefix(head(plan, block).as_slice())?).ok()?;
+        postcard::from_bytes(content.strip_prefix(head(plan, block).as_slice())?).ok()?;
     let keys = plan.keys(block);
     (rows.iter().map(|row| row.key).eq(keys)).then_some(rows)
 }

@@ -158,9 +158,9 @@ pub(crate) fn read(text: &str, path: &Path) -> Result<Content, SweepError> {
     }
     let objectives = objectives(&source, &raw, &axis)?;
     let tasks = tasks(&source, &raw, &axis, design)?;
-    let max_rate = raw.max_rate.as_ref().map(|told| {
-        let rate = |one| source.positive(Field::MaxRate, one, &told.span());
-        match told.get_ref() {
+    let max_rate = raw.max_rate.as_ref().map(|given| {
+        let rate = |one| source.positive(Field::MaxRate, one, &given.span());
+        match given.get_ref() {
             RawRates::Both(both) => rate(both).map(|rate| [rate; 2]),
             RawRates::Each([one, two]) => Ok([rate(one)?, rate(two)?]),
         }
@@ -219,7 +219,7 @@ fn within(
 fn objectives(source: &Text<'_>, raw: &Raw, axes: &[Axis]) -> Result<Vec<Aim>, SweepError> {
     let axis = axes.iter().find(|axis| axis.name == Field::Objective);
     let objectives = match (&raw.objective, axis) {
-        (Some(told), None) => vec![aim(source, raw, told)?],
+        (Some(given), None) => vec![aim(source, raw, given)?],
         (None, Some(axis)) => (0..axis.count())
             .filter_map(|index| Aim::of_index(axis.value(index)))
             .collect(),
@@ -229,18 +229,18 @@ fn objectives(source: &Text<'_>, raw: &Raw, axes: &[Axis]) -> Result<Vec<Aim>, S
                 "no objective: say objective = \"displacement\", or make it an axis with values = [\"displacement\", \"speed\"]",
             ));
         }
-        (Some(told), Some(_)) => {
+        (Some(given), Some(_)) => {
             return Err(source.wrong(
-                told.span(),
+                given.span(),
                 "the objective is an axis, too: leave it out here",
             ));
         }
     };
     let of_quarters = raw.axis.iter().flatten().zip(axes);
-    for (told, axis) in of_quarters.filter(|(_, axis)| axis.name.of_quarters()) {
+    for (given, axis) in of_quarters.filter(|(_, axis)| axis.name.of_quarters()) {
         if objectives.iter().any(|aim| *aim != Aim::Displacement) {
             return Err(source.wrong(
-                told.get_ref().name.span(),
+                given.get_ref().name.span(),
                 format!("{} is a bound of displacement gaits alone", axis.name),
             ));
         }
@@ -248,8 +248,8 @@ fn objectives(source: &Text<'_>, raw: &Raw, axes: &[Axis]) -> Result<Vec<Aim>, S
     Ok(objectives)
 }
 
-fn aim(source: &Text<'_>, raw: &Raw, told: &Spanned<String>) -> Result<Aim, SweepError> {
-    let word = told.get_ref().as_str();
+fn aim(source: &Text<'_>, raw: &Raw, given: &Spanned<String>) -> Result<Aim, SweepError> {
+    let word = given.get_ref().as_str();
     let gait = raw.gait.as_ref().map(|gait| gait.get_ref().as_str());
     if let (Some(gait), true) = (&raw.gait, word != "efficiency") {
         return Err(source.wrong(
@@ -263,14 +263,14 @@ fn aim(source: &Text<'_>, raw: &Raw, told: &Spanned<String>) -> Result<Aim, Swee
         ("efficiency", Some("large")) => Ok(Aim::EfficiencyLarge),
         ("efficiency", Some(other)) => Err(source.wrong(
             raw.gait.as_ref().map_or(0..0, Spanned::span),
-            format!("gait = \"{other}\" is none of small and large"),
+            format!("gait = \"{other}\" is not one of small and large"),
         )),
         ("speed", _) => Ok(Aim::Speed),
         ("turning", _) => Ok(Aim::Turning),
         ("sideways", _) => Ok(Aim::Sideways),
         ("stub", _) => Ok(Aim::Stub),
         (other, _) => Err(source.wrong(
-            told.span(),
+            given.span(),
             format!(
                 "objective = \"{other}\" is none of displacement, efficiency, speed, turning, sideways (and stub, which solves \
                  nothing, to try out a scheduler)"

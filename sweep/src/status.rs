@@ -96,10 +96,12 @@ fn costs(folder: &Path) -> [f64; 5] {
                 .split(',')
                 .filter_map(|word| word.parse().ok())
                 .collect();
-            if let [_, told @ ..] = numbers.as_slice()
-                && told.len() == sums.len()
+            if let [_, sums_of_part @ ..] = numbers.as_slice()
+                && sums_of_part.len() == sums.len()
             {
-                sums.iter_mut().zip(told).for_each(|(sum, one)| *sum += one);
+                sums.iter_mut()
+                    .zip(sums_of_part)
+                    .for_each(|(sum, one)| *sum += one);
             }
         }
     }

@@ -70,7 +70,7 @@ fn solved(
         }
     }
     if visit.compares {
-        visit.look_again(&keys);
+        visit.compare_neighbours(&keys);
     }
     let answers = visit.answers.into_iter();
     let rows = answers.map(|(key, answer)| match answer {

@@ -4,15 +4,15 @@ mod body;
 mod known;
 mod raw;
 mod read;
+mod reported;
 mod table;
-mod told;
 
 use std::path::{Path, PathBuf};
 
-use crate::place::read_text;
+use crate::file_error::read_text;
 use crate::{Axes, FileError, GaitSpec, SwimmerFile};
 pub use known::{Known, KnownValue};
-pub use told::{ToldRun, ToldValue};
+pub use reported::{ReportedResults, ReportedValue};
 
 /// A campaign, with its swimmer read and its paths resolved.
 ///
@@ -183,7 +183,7 @@ pub struct CampaignRun {
     /// The tracking file; for reported results the place at which they are written (`campaign.toml:12`, `figure.csv:3`).
     pub track: PathBuf,
     /// Reported results, if given instead of a track.
-    pub told: Option<ToldRun>,
+    pub reported: Option<ReportedResults>,
     /// The gait that was played.
     pub gait: GaitSpec,
     /// One cycle \[s\].
@@ -278,9 +278,9 @@ impl CampaignRun {
             GaitSpec::File { path, .. } => Some(path),
             _ => None,
         };
-        let track = match &self.told {
+        let track = match &self.reported {
             None => Some(&self.track),
-            Some(told) => told.table.as_ref(),
+            Some(reported) => reported.table.as_ref(),
         };
         [track, gait, self.timing.log.as_ref()]
     }

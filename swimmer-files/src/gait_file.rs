@@ -15,7 +15,7 @@ use std::str::FromStr;
 pub use bounds::Bounds;
 use nalgebra::Vector2;
 
-use crate::place::read_text;
+use crate::file_error::read_text;
 use crate::{FileError, GaitSpring, SwimmerHash, write_atomically};
 
 /// Objective that a gait was optimised for.

@@ -34,13 +34,13 @@ mod any_gait;
 mod atomic;
 mod axes;
 mod campaign;
+mod file_error;
 mod gait_file;
 mod gait_spec;
 mod hash;
 mod key;
 mod link_log;
 mod period;
-mod place;
 mod playlist;
 mod provenance;
 mod quantity;
@@ -52,9 +52,10 @@ pub use any_gait::AnyGait;
 pub use atomic::{stream_atomically, write_atomically};
 pub use axes::Axes;
 pub use campaign::{
-    Campaign, CampaignRun, Known, KnownValue, PointName, Reflector, Reflectors, RigidBody,
-    RunTiming, ToldRun, ToldValue, TrackSettings,
+    Campaign, CampaignRun, Known, KnownValue, PointName, Reflector, Reflectors, ReportedResults,
+    ReportedValue, RigidBody, RunTiming, TrackSettings,
 };
+pub use file_error::FileError;
 pub use gait_file::{ArcKind, Bounds, GaitArc, GaitFile, Objective};
 pub use gait_spec::{GaitSpec, GaitSpecError};
 pub use hash::SwimmerHash;
@@ -64,7 +65,6 @@ pub use link_log::{
     read_link_log,
 };
 pub use period::{UnplayablePeriod, check_playable_period};
-pub use place::FileError;
 pub use playlist::{Playlist, PlaylistStep};
 pub use provenance::{InputHash, Provenance, hash_of};
 pub use quantity::{AngleError, Quantity, Slip, parse_angle, parse_rate};

@@ -8,7 +8,7 @@ use serde::Deserialize;
 use swimmer_model::Gait as _;
 use toml::Spanned;
 
-use crate::place::read_text;
+use crate::file_error::read_text;
 use crate::{
     AnyGait, FileError, GaitFile, GaitSpec, SwimmerHash, check_playable_period, write_atomically,
 };

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
 
-use crate::place::read_text;
+use crate::file_error::read_text;
 use crate::{FileError, SwimmerFile, write_atomically};
 
 /// The `[provenance]` table of a swimmer file. Readers of swimmer files pass it over: it says nothing about the swimmer.

@@ -9,7 +9,7 @@ use std::path::Path;
 use link_protocol::Joint;
 use swimmer_model::{Link, Swimmer};
 
-use crate::place::read_text;
+use crate::file_error::read_text;
 use crate::{FileError, JointName, PassiveFile, Spring, SwimmerHash, write_atomically};
 
 /// Contents of a swimmer file.
@@ -144,7 +144,7 @@ impl SwimmerFile {
                     source: std::io::Error::new(
                         source.kind(),
                         format!(
-                            "{source}, and it is none of the presets {}{}",
+                            "{source}, and it is not one of the presets {}{}",
                             Self::PRESETS.join(", "),
                             meant(preset_or_path)
                         ),

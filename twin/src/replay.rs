@@ -377,23 +377,23 @@ impl Life {
     fn run(&mut self, events: &Events, until: u64, before: usize, count: &mut Count) {
         while self.tick < until {
             self.hear(events, self.tick, before);
-            let told = self.live();
+            let live = self.live();
             let Some(logged) = events.telemetry.get(&(self.tick - 1)) else {
                 continue;
             };
             self.battery_mv = logged.battery_mv;
             // The greeting may be read a tick later here than by the robot; until then no telemetry is sent.
-            self.greeted |= told.is_some();
+            self.greeted |= live.is_some();
             if !self.greeted {
                 continue;
             }
             count.compared += 1;
-            if told.is_none_or(|told| !same(&told, logged)) {
+            if live.is_none_or(|live| !same(&live, logged)) {
                 count.different += 1;
                 count.first_tick.get_or_insert(self.tick - 1);
                 count.first.get_or_insert(Difference {
                     logged: *logged,
-                    replayed: told,
+                    replayed: live,
                 });
             }
         }
@@ -412,18 +412,18 @@ impl Life {
             let Ok(()) = self.brain.serve_storage(now, &mut self.flash);
         }
         self.tick += 1;
-        let mut told = None;
+        let mut live = None;
         let mut bytes = [0; MAX_ENCODED];
         loop {
             let length = self.brain.transmit(VIA, &mut bytes);
             if length == 0 {
-                return told;
+                return live;
             }
             for &byte in bytes.get(..length).unwrap_or_default() {
                 if let Some(received) = self.decoder.push(byte)
                     && let Ok(Message::Telemetry(telemetry)) = received.message
                 {
-                    told = Some(telemetry);
+                    live = Some(telemetry);
                 }
             }
         }
@@ -525,10 +525,10 @@ fn on_this_clock(bytes: &[u8], now_us: u64, origin_us: u64) -> Vec<u8> {
     };
     match received.message {
         // Its host had not received the robot yet.
-        Ok(Message::Heartbeat(told)) if told.heard_us == 0 => heartbeat(0),
-        Ok(Message::Heartbeat(told)) => {
+        Ok(Message::Heartbeat(live)) if live.heard_us == 0 => heartbeat(0),
+        Ok(Message::Heartbeat(live)) => {
             // Frames are read here midway in a tick; a later time within it counts as the present one.
-            let heard_us = told.heard_us.wrapping_sub(origin_us);
+            let heard_us = live.heard_us.wrapping_sub(origin_us);
             let heard_us = heard_us.wrapping_add(u64::from(TICK_US));
             let ahead = heard_us.wrapping_sub(now_us) <= 2 * u64::from(TICK_US);
             heartbeat(if ahead { now_us } else { heard_us })
@@ -577,8 +577,8 @@ fn brain(events: &Events, session: u16) -> Brain {
         ..Limits::ROBOT
     };
     // A robot does not report the servo type for which it was built: the paper's servos are assumed, or those that were set up.
-    let told = events.servos.iter().flatten().next();
-    if let Some(servo) = told
+    let live = events.servos.iter().flatten().next();
+    if let Some(servo) = live
         && !(config.limits.allows_centre(servo.centre_ns)
             && config.limits.allows_slope(servo.slope_rad_per_us))
     {
@@ -591,8 +591,8 @@ fn brain(events: &Events, session: u16) -> Brain {
         max_rate: limits.max_rate,
         ..config.configuration
     });
-    for (place, told) in config.servos.iter_mut().zip(events.servos) {
-        if let Some(settings) = told {
+    for (place, live) in config.servos.iter_mut().zip(events.servos) {
+        if let Some(settings) = live {
             *place = settings;
         }
     }

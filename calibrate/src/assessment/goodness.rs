@@ -90,7 +90,7 @@ const POINTS: usize = 64;
 
 pub(super) fn goodness(found: &CampaignFit, plain: &Plain, joint: Option<&Joint>) -> Goodness {
     let data = plain.data.without(|row| row % QUANTITIES >= TELLING);
-    let told = data.has_errors();
+    let has_errors = data.has_errors();
     let weights = data.weights(|row| data.within[row].value);
     let (model, at) = (&plain.model, &plain.telling.at);
     let end = minimise(model, &data.values, &weights, at, &model.bounds());
@@ -107,7 +107,7 @@ pub(super) fn goodness(found: &CampaignFit, plain: &Plain, joint: Option<&Joint>
     order.sort_by(|a, b| sizes[*a].total_cmp(&sizes[*b]));
     Goodness {
         reduced_chi2: end
-            .filter(|_| told && freedom > 0)
+            .filter(|_| has_errors && freedom > 0)
             .map(|end| end.cost / freedom as f64),
         freedom,
         signs: (0..TELLING)

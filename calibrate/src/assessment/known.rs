@@ -33,7 +33,7 @@ pub(super) fn priors(found: &CampaignFit, model: &RunModel) -> Vec<Known> {
     let distance = found
         .runs
         .iter()
-        .find(|run| !run.is_told())
+        .find(|run| !run.is_reported())
         .map_or(length, |run| run.poses.report.distance_m);
     let reflector = known.reflector.map_or(REFLECTOR, |known| known.width);
     let usual = |value: f64, width: f64| KnownValue { value, width };

@@ -248,7 +248,7 @@ fn of_runs(found: &CampaignFit, goodness: &Goodness, say: &mut impl FnMut(Verdic
         .iter()
         .filter(|common| common.chance < COMMON)
     {
-        let told = |value: f64| {
+        let signed = |value: f64| {
             if common.quantity == "Y/X" {
                 format!("{value:+.4}")
             } else {
@@ -261,8 +261,8 @@ fn of_runs(found: &CampaignFit, goodness: &Goodness, say: &mut impl FnMut(Verdic
                 "all runs have {} {} ± {} beyond the model: something is not symmetric that no file names (servos unlike each other, \
                  an axis of the cameras that is not square)",
                 common.quantity,
-                told(common.mean),
-                told(common.error).trim_start_matches('+'),
+                signed(common.mean),
+                signed(common.error).trim_start_matches('+'),
             ),
         );
     }
@@ -365,7 +365,7 @@ fn pulls(systematics: &Systematics, say: &mut impl FnMut(Verdict, String)) {
         };
         let [known, width] = nuisance.known;
         let [value, deviation] = nuisance.found;
-        let told = |value: f64| readable(nuisance.unit, value);
+        let signed = |value: f64| readable(nuisance.unit, value);
         say(
             verdict,
             format!(
@@ -378,10 +378,10 @@ fn pulls(systematics: &Systematics, say: &mut impl FnMut(Verdict, String)) {
                 } else {
                     ""
                 },
-                told(value),
-                told(deviation),
-                told(known),
-                told(width),
+                signed(value),
+                signed(deviation),
+                signed(known),
+                signed(width),
                 if nuisance.stated { "stated" } else { "usual" }
             ),
         );

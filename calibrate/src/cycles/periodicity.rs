@@ -29,7 +29,7 @@ impl fmt::Display for Periodicity {
         match self.found_s {
             Some(found_s) if found_s < period_s && self.share > WELL => write!(
                 f,
-                "the heading repeats every {found_s:.3} s already, {:.0} times in what was taken for one cycle of {period_s:.3} s",
+                "the heading repeats every {found_s:.3} s, {:.0} times in the assumed cycle of {period_s:.3} s",
                 period_s / found_s
             )?,
             found => {

@@ -33,7 +33,7 @@ pub enum Phase {
     /// By the robot's log, moved to where the heading's harmonics match the model's.
     LogAndHeading,
     /// X, ΔY and Δθ are stated; there is no track.
-    Told,
+    Reported,
 }
 
 impl Phase {
@@ -44,7 +44,7 @@ impl Phase {
             Self::Flash => "flash",
             Self::Log => "log",
             Self::LogAndHeading => "log-and-heading",
-            Self::Told => "told",
+            Self::Reported => "told",
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Mean, deviation and standard error over cycles.
 
-use swimmer_files::ToldValue;
+use swimmer_files::ReportedValue;
 
 /// Statistics of one quantity over the cycles of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,9 +20,9 @@ pub struct Statistics {
 
 impl Statistics {
     /// Stated value of this number of cycles; NaN if it is not stated.
-    pub(crate) fn told(value: Option<&ToldValue>, cycles: Option<usize>) -> Self {
+    pub(crate) fn reported(value: Option<&ReportedValue>, cycles: Option<usize>) -> Self {
         let nothing = f64::NAN;
-        let Some(ToldValue { mean, sd, se }) = value else {
+        let Some(ReportedValue { mean, sd, se }) = value else {
             return Self {
                 mean: nothing,
                 sd: nothing,

@@ -25,7 +25,7 @@ pub(super) const ENOUGH_RUNS: usize = 5;
 
 /// Population of the bootstrap: one run's values of single cycles about their mean, each quantity in units of its scale.
 #[derive(Debug, Clone)]
-pub(super) struct Drawn {
+pub(super) struct RunDeviations {
     pub(super) means: [f64; QUANTITIES],
     /// `true` for each quantity that the run has.
     pub(super) there: [bool; QUANTITIES],
@@ -45,7 +45,7 @@ pub(super) struct Bootstrap {
 /// Draws and fits.
 pub(super) fn bootstrap(
     surface: &Surface,
-    runs: &[Drawn],
+    runs: &[RunDeviations],
     optimum: [f64; 2],
     level: f64,
     options: EvidenceOptions,

@@ -45,7 +45,11 @@ impl LikelihoodProblem {
     }
 
     /// The optimum of the likelihood from as many starts as the paper's fit, with the variances of an estimate.
-    pub(super) fn sought_widely(&self, model: &RunModel, estimate: &Estimate) -> Option<[f64; 2]> {
+    pub(super) fn multi_start_optimum(
+        &self,
+        model: &RunModel,
+        estimate: &Estimate,
+    ) -> Option<[f64; 2]> {
         let end = fit::search(model, &self.data, &estimate.weights).ok()?;
         Some([end.at[0], end.at[1]])
     }
@@ -83,7 +87,7 @@ impl LikelihoodProblem {
     }
 
     /// Cycles of a run as the bootstrap draws them; of repeats the first stands for all, with their mean.
-    pub(super) fn drawn(&self, run: usize, cycles: &Cycles) -> bootstrap::Drawn {
+    pub(super) fn drawn(&self, run: usize, cycles: &Cycles) -> bootstrap::RunDeviations {
         let row = |q: usize| QUANTITIES * run + q;
         let of_cycles = |of: fn(&Cycle) -> f64| cycles.cycles.iter().map(of).collect();
         let of_steps = |of: fn(&Pose<f64>) -> f64| {
@@ -115,7 +119,7 @@ impl LikelihoodProblem {
                 .map(|v| (v - mean) * wide / self.data.scales[q])
                 .collect()
         };
-        bootstrap::Drawn {
+        bootstrap::RunDeviations {
             means: std::array::from_fn(|q| self.data.values[row(q)]),
             there: std::array::from_fn(|q| self.data.used[row(q)]),
             deviations: std::array::from_fn(deviations),

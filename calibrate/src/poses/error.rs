@@ -17,7 +17,7 @@ pub enum PoseError {
     },
     /// Nobody said how long the track's unit is.
     #[error(
-        "the track's lengths are in `{unit}`; say how many metres that is (`scale` under [tracks] in the campaign, or --scale){}",
+        "the track's lengths are in `{unit}`; give that length in metres (`scale` under [tracks] in the campaign, or --scale){}",
         scale.map_or(String::new(), |scale| format!("; by the reflectors' distance it is {scale:.6e}"))
     )]
     NoScale {

@@ -7,7 +7,7 @@ use crate::poses::Stretch;
 const FAR: f64 = 0.01;
 
 /// Number of stretches whose times are printed; JSON lists all.
-const TOLD: usize = 4;
+const LISTED: usize = 4;
 
 /// Times of the stretches.
 fn times(stretches: &[Stretch]) -> String {
@@ -18,12 +18,12 @@ fn times(stretches: &[Stretch]) -> String {
             format!("{:.2} s", stretch.from_s)
         }
     };
-    let mut told: Vec<String> = stretches.iter().take(TOLD).map(time).collect();
-    let more = stretches.len().saturating_sub(TOLD);
+    let mut listed: Vec<String> = stretches.iter().take(LISTED).map(time).collect();
+    let more = stretches.len().saturating_sub(LISTED);
     if more > 0 {
-        told.push(format!("and {more} times more"));
+        listed.push(format!("and {more} times more"));
     }
-    told.join(", ")
+    listed.join(", ")
 }
 
 impl RunResult {

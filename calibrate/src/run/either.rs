@@ -13,28 +13,28 @@ use crate::prediction::Played;
 /// A run with a track or with stated results.
 pub(crate) enum EitherRun<'a> {
     Tracked(Box<Run<'a>>),
-    Told(Box<ReportedRun>),
+    Reported(Box<ReportedRun>),
 }
 
 impl EitherRun<'_> {
     pub(crate) fn file(&self) -> &Path {
         match self {
             Self::Tracked(run) => &run.data.file,
-            Self::Told(run) => &run.file,
+            Self::Reported(run) => &run.file,
         }
     }
 
     pub(crate) fn period_s(&self) -> f64 {
         match self {
             Self::Tracked(run) => run.clock.period_s(),
-            Self::Told(run) => run.cycles.period_s,
+            Self::Reported(run) => run.cycles.period_s,
         }
     }
 
     pub(crate) fn played(&self) -> Played {
         match self {
             Self::Tracked(run) => run.played(),
-            Self::Told(run) => run.played.clone(),
+            Self::Reported(run) => run.played.clone(),
         }
     }
 
@@ -47,7 +47,7 @@ impl EitherRun<'_> {
     ) -> Result<RunErrors, CalibrateError> {
         match self {
             Self::Tracked(run) => run.errors(cycles, swimmer, projection),
-            Self::Told(_) => Ok(RunErrors::default()),
+            Self::Reported(_) => Ok(RunErrors::default()),
         }
     }
 
@@ -58,7 +58,7 @@ impl EitherRun<'_> {
     ) -> Result<f64, CalibrateError> {
         match self {
             Self::Tracked(run) => run.start(swimmer, projection),
-            Self::Told(_) => Ok(0.0),
+            Self::Reported(_) => Ok(0.0),
         }
     }
 
@@ -70,7 +70,7 @@ impl EitherRun<'_> {
     ) -> Result<Cycles, CalibrateError> {
         match self {
             Self::Tracked(run) => run.settled(start_s, swimmer, projection),
-            Self::Told(run) => Ok(run.cycles.clone()),
+            Self::Reported(run) => Ok(run.cycles.clone()),
         }
     }
 
@@ -82,8 +82,8 @@ impl EitherRun<'_> {
         projection: &Projection,
     ) -> Result<Option<Opposed>, CalibrateError> {
         let (told, name) = match self {
-            Self::Tracked(run) => (&run.told, &run.data.gait_name),
-            Self::Told(run) => (&run.played, &run.gait),
+            Self::Tracked(run) => (&run.commanded, &run.data.gait_name),
+            Self::Reported(run) => (&run.played, &run.gait),
         };
         Ok(opposed(
             cycles,
@@ -95,7 +95,7 @@ impl EitherRun<'_> {
     pub(crate) fn finish(self, cycles: Cycles, errors: RunErrors) -> RunResult {
         match self {
             Self::Tracked(run) => run.finish(cycles, errors),
-            Self::Told(run) => run.finish(),
+            Self::Reported(run) => run.finish(),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use swimmer_files::{AnyGait, CampaignRun, SwimmerFile, ToldRun};
+use swimmer_files::{AnyGait, CampaignRun, ReportedResults, SwimmerFile};
 
 use super::RunResult;
 use crate::cycles::Cycles;
@@ -23,7 +23,7 @@ pub(crate) struct ReportedRun {
 impl ReportedRun {
     pub(crate) fn begin(
         index: usize,
-        (run, told): (&CampaignRun, &ToldRun),
+        (run, reported): (&CampaignRun, &ReportedResults),
         gait: &AnyGait,
         swimmer: &SwimmerFile,
     ) -> Result<Self, CalibrateError> {
@@ -33,7 +33,7 @@ impl ReportedRun {
             index,
             file: run.track.clone(),
             gait: run.gait.to_string(),
-            cycles: Cycles::told(told, period_s),
+            cycles: Cycles::reported(reported, period_s),
             played: played.map_err(|cause| CalibrateError::Prediction {
                 file: run.track.clone(),
                 cause,

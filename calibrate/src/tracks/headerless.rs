@@ -64,13 +64,13 @@ pub(super) fn read(
         clock(cells),
         rows.last().and_then(|(_, cells)| clock(cells)),
     );
-    let told = match ends {
+    let scale_and_rate = match ends {
         (Some((f0, t0)), Some((f1, t1))) if f1 > f0 && t1 > t0 => {
             Some(whole((f1 - f0) / (t1 - t0)))
         }
         _ => None,
     };
-    let (rate_hz, other_rate) = match told {
+    let (rate_hz, other_rate) = match scale_and_rate {
         Some(rate) => options.rate_over(rate),
         None => (options.need_rate(first, file)?, None),
     };

@@ -6,7 +6,7 @@ use crate::lab;
 
 use calibrate::{
     CalibrateError, FitError, FitOptions, FitWarning, NuisanceParameter, Verdict,
-    calibrate_campaign, fit_further,
+    calibrate_campaign, fit_nuisance,
 };
 use judged::Judged;
 use lab::Lab;
@@ -89,7 +89,7 @@ fn offsets_are_told_apart() {
     }
     let (campaign, data) = lab.campaign();
     let found = calibrate_campaign(&campaign, &data, FitOptions::default()).unwrap();
-    let fit = fit_further(&found, &[NuisanceParameter::JointOffsets]).unwrap();
+    let fit = fit_nuisance(&found, &[NuisanceParameter::JointOffsets]).unwrap();
     for (name, truth) in ["front joint offset", "back joint offset"]
         .into_iter()
         .zip(truth)

@@ -3,7 +3,7 @@
 use crate::judged;
 use crate::lab;
 
-use calibrate::{FitError, Measured, NuisanceParameter, Verdict, fit_further};
+use calibrate::{FitError, Measured, NuisanceParameter, Verdict, fit_nuisance};
 use judged::Judged;
 use lab::{Faults, Lab};
 
@@ -73,11 +73,11 @@ fn what_is_measured_is_not_fitted() {
         (NuisanceParameter::DeadBand, "dead band"),
         (NuisanceParameter::JointOffsets, "front joint offset"),
     ] {
-        let refused = fit_further(&judged.found, &[further]).unwrap_err();
+        let refused = fit_nuisance(&judged.found, &[further]).unwrap_err();
         assert_eq!(refused, FitError::Measured { parameter: name });
         assert!(refused.to_string().contains("measured"), "{refused}");
     }
-    let scale = fit_further(&judged.found, &[NuisanceParameter::Scale]).unwrap();
+    let scale = fit_nuisance(&judged.found, &[NuisanceParameter::Scale]).unwrap();
     let [low, high] = scale.parameter("camera scale").unwrap().interval;
     assert!(low < 1.0 && high > 1.0);
     let names = |name: &str| {

@@ -5,7 +5,7 @@ use crate::judged;
 use crate::lab;
 use crate::oracle;
 
-use calibrate::{NuisanceParameter, Verdict, fit_further};
+use calibrate::{NuisanceParameter, Verdict, fit_nuisance};
 use judged::{Judged, LEVEL, by_chance, holds, with_systematics};
 use lab::Lab;
 use statrs::distribution::{Binomial, DiscreteCDF};
@@ -28,7 +28,7 @@ fn common_gain(gain: f64, noise: f64, runs: &[f64], seed: u64) -> (bool, [bool; 
         .with_noise(noise);
     let judged = Judged::at(&lab, USUAL_LEVEL).unwrap();
     let told = judged.holds() == [true; 2] || (judged.refused() && judged.names("gain"));
-    let fitted = fit_further(&judged.found, &[NuisanceParameter::Gain]).unwrap();
+    let fitted = fit_nuisance(&judged.found, &[NuisanceParameter::Gain]).unwrap();
     let inside = holds(&fitted.intervals().unwrap(), judged.truth);
     println!(
         "gain {gain}, {:.1} mm, {} runs: {}; fitted {:.4} {:?}, truth inside (r_s, χ): {inside:?}",

@@ -16,7 +16,7 @@ use gait_optimizer::{
 use swimmer_files::SwimmerFile;
 
 use crate::arguments::{load_swimmer, rate};
-use crate::bounds::WholeBounds;
+use crate::bounds::CycleBounds;
 use crate::document::Document;
 use crate::failure::{Failure, Outcome};
 use crate::new_folder::NewFolder;
@@ -47,7 +47,7 @@ pub(crate) struct Atlas {
     #[arg(long, value_name = "ANGLE_PER_S", value_parser = rate, num_args = 1..=2)]
     max_rate: Vec<f64>,
     #[command(flatten)]
-    bounds: WholeBounds,
+    bounds: CycleBounds,
     /// Number of random starts; known gaits are additional starts and not counted here
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     starts: u32,
@@ -121,7 +121,7 @@ impl Atlas {
         }
         let folder = self.output.as_deref().map(NewFolder::start).transpose()?;
         let starts = usize::try_from(self.starts).unwrap_or(usize::MAX);
-        let progress = Progress::of_a_whole("looking for optima");
+        let progress = Progress::with_share("looking for optima");
         let asked = AtlasProblem {
             bounds,
             starts,
@@ -196,7 +196,7 @@ fn listed(
     ));
     let mut optima = Vec::new();
     for (number, optimum) in found.optima.iter().enumerate() {
-        let (keys, cells) = told(optimum, rates, seconds)?;
+        let (keys, cells) = document_of(optimum, rates, seconds)?;
         answer.line(format!("  {:<3}  {cells}", number + 1));
         optima.push(keys);
     }
@@ -215,7 +215,11 @@ fn listed(
 }
 
 /// Keys of a gait, and its cells of the table.
-fn told(optimum: &Optimum, rates: Option<[f64; 2]>, seconds: f64) -> Outcome<(Document, String)> {
+fn document_of(
+    optimum: &Optimum,
+    rates: Option<[f64; 2]>,
+    seconds: f64,
+) -> Outcome<(Document, String)> {
     let gait = &optimum.gait;
     let mut keys = Document::default();
     keys.key("efficiency", gait.efficiency)

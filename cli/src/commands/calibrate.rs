@@ -32,7 +32,7 @@ use crate::recording::Recording;
 /// Turn tracks into poses, cycles and fitted drag parameters
 ///
 /// FILE is a campaign (TOML), whose runs together give r_s and χ; or one tracking file, of which only the cycles are
-/// reported (then --gait, --period and --swimmer say what was swum).
+/// reported (then --gait, --period and --swimmer name the gait).
 #[derive(Debug, clap::Args)]
 #[allow(clippy::doc_markdown)] // the help is for people: r_s, not `r_s`
 pub(crate) struct Calibrate {
@@ -293,7 +293,7 @@ impl Calibrate {
         let (Some(gait), Some(period_s), Some(swimmer)) = (&self.gait, self.period, &self.swimmer)
         else {
             return Err(Failure::BadInput(format!(
-                "{} is no campaign (.toml), so say what was swum: --gait, --period and --swimmer",
+                "{} is no campaign (.toml), so name the gait: --gait, --period and --swimmer",
                 self.file.display()
             )));
         };

@@ -86,7 +86,7 @@ impl Certify {
         warn_if_for_another(&swimmer, &gait, &self.gait.to_string(), context);
         if self.objective.is_none() && gait.objective == Objective::Unspecified {
             return Err(operations::Error::refused(format!(
-                "{} does not tell what it shall be optimal for; add --objective displacement, efficiency, turning, sideways or speed",
+                "{} names no objective; add --objective displacement, efficiency, turning, sideways or speed",
                 self.gait.readable()
             )));
         }

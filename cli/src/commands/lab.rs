@@ -173,7 +173,7 @@ fn address(listener: &TcpListener, gate: &Gate) -> Outcome<String> {
     })?;
     if !place.ip().is_loopback() {
         aside(
-            "note: other machines reach this page at this one's address, and the token crosses the network in the clear: whoever reads it may drive the robot",
+            "note: other machines reach this page at this one's address, and the token crosses the network in the clear: anyone who reads it may drive the robot",
         );
     }
     let host = typed(gate.name.as_deref(), place);

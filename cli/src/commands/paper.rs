@@ -40,7 +40,7 @@ impl Paper {
     /// Computes everything and answers.
     pub(crate) fn run(self, output: Output) -> Outcome {
         let folder = self.output.as_deref().map(NewFolder::start).transpose()?;
-        let progress = Progress::of_a_whole("computing the paper's gaits");
+        let progress = Progress::with_share("computing the paper's gaits");
         let study =
             Study::new(&|share| progress.at_share(share)).map_err(|why| Failure::tried(&why))?;
         progress.doing("drawing");

@@ -39,7 +39,7 @@ use self::access::Contact;
 pub(crate) use self::bench::Bench;
 use self::outputs::RobotState;
 use self::port::Pace;
-use self::port_owner::Ask;
+use self::port_owner::PortRequest;
 pub(crate) use self::shared_port::{PortEvent, SharedPort, SharedPortOptions};
 pub(crate) use self::tracking::Tracked;
 pub(crate) use self::upload::table_of;
@@ -272,7 +272,11 @@ impl Robot {
 }
 
 fn status(access: &Access, output: Output) -> Outcome {
-    match access.contact(Ask::Status, "swimmer robot status", Pace::AsFastAsPossible)? {
+    match access.contact(
+        PortRequest::Status,
+        "swimmer robot status",
+        Pace::AsFastAsPossible,
+    )? {
         Contact::Relayed(relayed) => {
             output.print(&relayed.into_output());
             Ok(())

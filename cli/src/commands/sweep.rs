@@ -133,7 +133,9 @@ impl Merge {
 fn shard(text: &str) -> Result<Shard, String> {
     text.split_once('/')
         .and_then(|(number, of)| Shard::new(number.parse().ok()?, of.parse().ok()?))
-        .ok_or_else(|| "write which shard of how many, as 2/7 (from 1/7 to 7/7)".to_owned())
+        .ok_or_else(|| {
+            "write the shard and the number of shards, as 2/7 (from 1/7 to 7/7)".to_owned()
+        })
 }
 
 /// The shard that Slurm's job array gives this process; none outside of one.

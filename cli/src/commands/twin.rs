@@ -127,7 +127,7 @@ impl Twin {
         if let Some(link) = &self.pty {
             ports.push(self.faulty(open_terminal(link)?));
             output.line(&format!(
-                "{} lives at {}; Ctrl-C ends it.",
+                "{} runs at {}; Ctrl-C ends it.",
                 file.name,
                 link.display()
             ));
@@ -158,7 +158,7 @@ impl Twin {
             .iter_mut()
             .map(|port| port.as_mut() as &mut dyn Port)
             .collect();
-        let mut told = false;
+        let mut is_reported = false;
         let mut joints = self.show_joints.then(Joints::default);
         serve(&mut robot, &mut borrowed, |robot| {
             if let Some(joints) = &mut joints
@@ -169,10 +169,10 @@ impl Twin {
             if let Some(cameras) = &mut cameras {
                 cameras.stream(robot.world_mut());
             }
-            if let Some(error) = robot.world().recording_failed().filter(|_| !told) {
-                told = true;
+            if let Some(error) = robot.world().recording_failed().filter(|_| !is_reported) {
+                is_reported = true;
                 aside(&format!(
-                    "warning: {error}; the recording ends here, the robot lives on"
+                    "warning: {error}; the recording ends here, the robot continues"
                 ));
             }
             !interrupt.requested()

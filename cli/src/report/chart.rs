@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use plotters::prelude::*;
 
-use super::placing::Places;
+use super::placing::Obstacles;
 use super::style::{
     AXIS, Area, LEGEND_LINE, NAMES, NUMBERS, SCALE, TITLE, WORDS, arrows, finished, head, legend,
     letters, pixels, said, stroke,
@@ -183,7 +183,7 @@ impl Chart {
             .y_desc(self.y_label.as_str())
             .draw()
             .map_err(|error| said(&error))?;
-        let mut places = Places::default();
+        let mut places = Obstacles::default();
         for series in &self.series {
             if let Series::Dots { points, radius, .. } = series
                 && points.len() <= MOST_OBSTACLES

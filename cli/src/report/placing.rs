@@ -5,7 +5,7 @@ type Box = [i32; 4];
 
 /// What a chart's words must not cover.
 #[derive(Debug, Default)]
-pub(super) struct Places(Vec<Box>);
+pub(super) struct Obstacles(Vec<Box>);
 
 /// A word's place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,7 +19,7 @@ pub(super) struct Placed {
 /// Steps outwards that are tried; beyond them the word stays at its usual place.
 const STEPS: i32 = 8;
 
-impl Places {
+impl Obstacles {
     /// Keeps words off a disc.
     pub(super) fn disc(&mut self, (x, y): (i32, i32), radius: i32) {
         self.0
@@ -86,13 +86,13 @@ mod tests {
 
     #[test]
     fn a_lone_word_is_right_of_its_point() {
-        let placed = Places::default().word((100, 100), SIZE, USUAL, WITHIN);
+        let placed = Obstacles::default().word((100, 100), SIZE, USUAL, WITHIN);
         assert_eq!((placed.offset, placed.is_far), (USUAL, false));
     }
 
     #[test]
     fn words_at_one_point_do_not_cover_each_other() {
-        let mut places = Places::default();
+        let mut places = Obstacles::default();
         places.disc((250, 200), 4);
         for _ in 0..20 {
             places.word((250, 200), SIZE, USUAL, WITHIN);
@@ -111,7 +111,7 @@ mod tests {
 
     #[test]
     fn a_word_stays_in_the_drawing() {
-        let placed = Places::default().word((498, 100), SIZE, USUAL, WITHIN);
+        let placed = Obstacles::default().word((498, 100), SIZE, USUAL, WITHIN);
         assert!(498 + placed.offset.0 + SIZE.0 <= WITHIN.0);
     }
 }

@@ -99,7 +99,7 @@ fn the_first_day_quotes_what_is_said() {
 fn a_silent_port() {
     let device = Device::new(|_| Vec::new());
     without_times().bind(|| insta::assert_snapshot!(device.sentence(), @r"
-note: while connecting: nothing valid heard from the robot for [TIME] s; still trying.
+note: while connecting: no valid frame from the robot for [TIME] s; still trying.
 error: while connecting: no answer after 5 tries in [TIME] ms (5 frames ([N] bytes) sent, 4 of them again; 0 frames ([N] bytes) received, [N] broken, 0 foreign); is the robot on and paired, and is this its port? Without its Bluetooth module's STATE wire it hears and never answers
 "));
 }
@@ -114,7 +114,7 @@ fn a_device_at_another_speed() {
             .collect()
     });
     without_times().bind(|| insta::assert_snapshot!(device.sentence(), @r"
-note: while connecting: nothing valid heard from the robot for [TIME] s; still trying.
+note: while connecting: no valid frame from the robot for [TIME] s; still trying.
 error: while connecting: no answer after 5 tries in [TIME] ms (5 frames ([N] bytes) sent, 4 of them again; 0 frames ([N] bytes) received, [N] broken, 0 foreign); bytes come but none make sense: is this the robot's port, is its Bluetooth module set to 115200 baud (AT+UART=115200,0,0; a robot built for another speed wants --baud), and are all grounds joined?
 "));
 }

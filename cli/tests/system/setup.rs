@@ -32,7 +32,7 @@ impl Twin {
             .spawn()
             .unwrap();
         let mut lines = BufReader::new(process.stdout.take().unwrap()).lines();
-        assert!(lines.next().unwrap().unwrap().contains("lives at"));
+        assert!(lines.next().unwrap().unwrap().contains("runs at"));
         let seen = Arc::new(Mutex::new(Vec::new()));
         let sees = Arc::clone(&seen);
         thread::spawn(move || {

@@ -232,7 +232,7 @@ fn a_heading_settles_the_front_of_points_without_names() {
         let mut filter = filter(0.08);
         for (frame, truth) in frames.iter().zip(&poses) {
             filter.push(frame);
-            if filter.is_found() && !filter.knows_front() {
+            if filter.is_tracked() && !filter.knows_front() {
                 let turn = if opposite { std::f64::consts::PI } else { 0.0 };
                 assert!(filter.face(truth.theta + turn + 1.0));
             }

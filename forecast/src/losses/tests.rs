@@ -39,7 +39,7 @@ fn asked(
     forecast(&robot(), gait, &played)
 }
 
-fn told(gait: &AnyGait, servos: Servos, period: f64, knots: usize) -> Forecast {
+fn predicted(gait: &AnyGait, servos: Servos, period: f64, knots: usize) -> Forecast {
     asked(gait, servos, period, knots).unwrap()
 }
 
@@ -60,7 +60,7 @@ fn a_dead_band_shrinks_the_gait() {
         dead_band: band,
         ..ServoFile::default()
     });
-    let forecast = told(&AnyGait::circle(amplitude), servos, 30.0, 512);
+    let forecast = predicted(&AnyGait::circle(amplitude), servos, 30.0, 512);
     let circle = AnyGait::circle(amplitude - band);
     let smaller = swim(&model, &circle, &Tolerance::default());
     let (designed, played) = forecast.ends().unwrap();
@@ -80,7 +80,7 @@ fn a_dead_band_shrinks_the_gait() {
 fn interpolation_losses_fall_at_fourth_order() {
     let gait = AnyGait::circle(1.4);
     let servos = fine(ideal());
-    let loss = |knots| stage(&told(&gait, servos, 30.0, knots), Stage::Interpolated).loss;
+    let loss = |knots| stage(&predicted(&gait, servos, 30.0, knots), Stage::Interpolated).loss;
     let losses = [12, 24, 48, 96].map(loss);
     assert!(
         losses[0].abs() > 1e-6,
@@ -119,7 +119,7 @@ fn a_coarse_table_by_another_integration() {
     let model = robot();
     let gait = AnyGait::circle(1.4);
     let servos = fine(ideal());
-    let told = stage(&told(&gait, servos, 30.0, 16), Stage::Rounded);
+    let predicted = stage(&predicted(&gait, servos, 30.0, 16), Stage::Rounded);
     let table = GaitTable::from_fn(16, |u| gait.at(u).phi.into()).unwrap();
     let shape = |i: usize| {
         let phase = Phase {
@@ -135,18 +135,18 @@ fn a_coarse_table_by_another_integration() {
         pose = pose * swimmer_model::Pose::exp(&twist);
     }
     assert!(
-        (pose.x - told.displacement.x).abs() < 1e-7,
+        (pose.x - predicted.displacement.x).abs() < 1e-7,
         "{} {}",
         pose.x,
-        told.displacement.x
+        predicted.displacement.x
     );
-    assert!((pose.theta - told.rotation).abs() < 1e-5);
+    assert!((pose.theta - predicted.rotation).abs() < 1e-5);
 }
 
 #[test]
 fn good_servos_lose_nothing() {
     let servos = fine(ideal());
-    let forecast = told(&AnyGait::circle(1.0), servos, 200.0, 512);
+    let forecast = predicted(&AnyGait::circle(1.0), servos, 200.0, 512);
     let share = forecast.share(forecast.total_loss()).unwrap();
     assert!(share.abs() < 1e-4, "{share}");
     // Joints that end a tick's step one after the other go round a corner of 1e-4 rad²: next to nothing, and seen.
@@ -166,7 +166,7 @@ fn slow_servos_are_told() {
         dead_band: 0.0,
         ..ServoFile::default()
     });
-    let forecast = told(&AnyGait::circle(1.2), servos, 30.0, 512);
+    let forecast = predicted(&AnyGait::circle(1.2), servos, 30.0, 512);
     assert!(stage(&forecast, Stage::RateLimited).loss > 0.02 * forecast.stages[0].displacement.x);
     assert!(forecast.verdict.min_period > 30.0);
     assert!(forecast.verdict.refused.is_some());
@@ -177,13 +177,13 @@ fn slow_servos_are_told() {
 #[test]
 fn close_links_are_told() {
     let servos = Servos::on_the_robot(ServoFile::default());
-    let wide = told(&AnyGait::circle(1.83 * 2.0_f64.sqrt()), servos, 60.0, 512);
+    let wide = predicted(&AnyGait::circle(1.83 * 2.0_f64.sqrt()), servos, 60.0, 512);
     assert!(wide.gap.distance < wide.margin, "{:?}", wide.gap);
     assert!(!wide.warnings().is_empty());
     let links = Swimmer::<f64>::robot().links;
     // Tip to tip at φ₁ = φ₂ = φ: l₀ + 2 l₁ cos φ.
     let shape = 1.78;
-    let close = told(&AnyGait::circle(shape * 2.0_f64.sqrt()), servos, 60.0, 512);
+    let close = predicted(&AnyGait::circle(shape * 2.0_f64.sqrt()), servos, 60.0, 512);
     let tips = links.middle + 2.0 * links.front * shape.cos();
     assert!(
         (close.designed_gap.distance - tips).abs() < 1e-4,
@@ -191,7 +191,12 @@ fn close_links_are_told() {
         close.designed_gap
     );
     assert!(
-        (told(&AnyGait::circle(0.5), servos, 30.0, 512).gap.distance - links.middle).abs() < 0.02
+        (predicted(&AnyGait::circle(0.5), servos, 30.0, 512)
+            .gap
+            .distance
+            - links.middle)
+            .abs()
+            < 0.02
     );
 }
 

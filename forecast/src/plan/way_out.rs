@@ -51,7 +51,7 @@ pub(super) fn ways_out(sweeps: &Sweeps<'_>, begun: &Pose<f64>, everywhere: bool)
     let mut open = BinaryHeap::from([Reverse((Time(0.0), 0))]);
     let mut visited = HashSet::new();
     let mut ways = Vec::new();
-    let mut told = HashSet::new();
+    let mut reached = HashSet::new();
     while let Some(Reverse((Time(time), at))) = open.pop() {
         let pose = nodes[at].pose;
         if !visited.insert(cell(&pose, ALIKE)) {
@@ -98,7 +98,7 @@ pub(super) fn ways_out(sweeps: &Sweeps<'_>, begun: &Pose<f64>, everywhere: bool)
                 }
             }
         }
-        if told.insert(cell(&pose, APART)) {
+        if reached.insert(cell(&pose, APART)) {
             ways.push(way(&nodes, at));
         }
         let free = at == 0 && !everywhere && free_scales > 5.99 * LARGEST;

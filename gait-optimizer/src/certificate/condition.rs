@@ -2,7 +2,7 @@
 
 use swimmer_files::GaitFile;
 
-use super::{Check, SeenBy};
+use super::{Check, Dependence};
 
 /// Conditions with their meaning, key and tolerance: an upper bound (`<=`) or a lower bound (`>=`) of the value.
 macro_rules! conditions {
@@ -209,7 +209,7 @@ impl Condition {
             tolerance,
             pass,
             uncertainty: 0.0,
-            seen_by: SeenBy::Curve,
+            depends_on: Dependence::Curve,
         }
     }
 }

@@ -250,7 +250,7 @@ pub(super) fn knot(file: &GaitFile, u: f64) -> Option<usize> {
 }
 
 /// Kind of each interval between knots, from the arcs of the file.
-pub(super) fn told_by_arcs(file: &GaitFile) -> Vec<Along> {
+pub(super) fn along_arcs(file: &GaitFile) -> Vec<Along> {
     let intervals = file.u.array_windows();
     let middles = intervals.map(|&[from, to]| f64::midpoint(from, to));
     let along = |u: f64| {

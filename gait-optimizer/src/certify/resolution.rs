@@ -10,7 +10,7 @@ use swimmer_files::{AnyGait, GaitFile};
 use swimmer_model::Gait as _;
 
 use super::grid::knot;
-use crate::certificate::{Certificate, Check, Condition, SeenBy};
+use crate::certificate::{Certificate, Check, Condition, Dependence};
 
 /// Number of digits above which a number counts as not rounded.
 const MOST_DIGITS: i32 = 13;
@@ -187,12 +187,12 @@ pub(super) fn with_uncertainty(
     let (slope, pose) = (value(Condition::SlopesKnown), value(Condition::PosesKnown));
     let coarse = certificate.is_too_coarse();
     certificate.with_uncertainty(|check| {
-        if check.seen_by == SeenBy::Spacing {
+        if check.depends_on == Dependence::Spacing {
             return f64::INFINITY;
         }
         let rounded = moved.iter().map(|other| changed(check, other));
         let rounded = MARGIN * rounded.fold(0.0, f64::max);
-        if check.seen_by == SeenBy::Samples {
+        if check.depends_on == Dependence::Samples {
             return rounded;
         }
         let spaced = fewer.iter().map(|other| changed(check, other));

@@ -5,12 +5,12 @@ use nalgebra::Vector2;
 use swimmer_files::{AnyGait, Bounds, GaitFile};
 use swimmer_model::{Links, Model, crossing_share};
 
-use super::grid::{Along, Degree, Grid, told_by_arcs};
+use super::grid::{Along, Degree, Grid, along_arcs};
 use super::limits::Limit;
 use super::path::Path;
 use super::resolution::Rounding;
 use super::symmetry::is_symmetric;
-use crate::certificate::{Check, Condition, SeenBy, simple_and_turning_once};
+use crate::certificate::{Check, Condition, Dependence, simple_and_turning_once};
 use crate::numerics::worse;
 use crate::region::Region;
 
@@ -49,7 +49,7 @@ impl<'a> Subject<'a> {
         let along = if gait.arcs.is_empty() {
             touching(&region, gait)
         } else {
-            told_by_arcs(gait)
+            along_arcs(gait)
         };
         let (grid, shapes) = Grid::new(gait, &along);
         let path = Path::new(model, &grid, &shapes, Degree::Fine);
@@ -90,7 +90,7 @@ impl<'a> Subject<'a> {
         curve: &AnyGait,
         coarse: bool,
     ) -> Vec<Check> {
-        let at_samples = |check: Check| check.seen_by(SeenBy::Samples);
+        let at_samples = |check: Check| check.depends_on(Dependence::Samples);
         let gap = match (gait.phi.first(), gait.phi.last()) {
             (Some(first), Some(last)) => (last - first).norm(),
             _ => f64::NAN,
@@ -98,13 +98,13 @@ impl<'a> Subject<'a> {
         let mut checks = vec![at_samples(Condition::Closed.check(gap))];
         if self.region.is_of_quarters() {
             let off = if self.symmetric { 0.0 } else { 1.0 };
-            let seen_by = if coarse {
-                SeenBy::Spacing
+            let depends_on = if coarse {
+                Dependence::Spacing
             } else {
-                SeenBy::Curve
+                Dependence::Curve
             };
             let check = Condition::PapersSymmetries.check(off);
-            checks.push(check.seen_by(seen_by));
+            checks.push(check.depends_on(depends_on));
         }
         let nodes = 0..self.grid.nodes.len();
         let limits = nodes.flat_map(|node| self.limits_at(node));
@@ -137,7 +137,8 @@ impl<'a> Subject<'a> {
         } else {
             &gait.phi
         };
-        simple_and_turning_once(&gait.phi, simple).map(|check| check.seen_by(SeenBy::Samples))
+        simple_and_turning_once(&gait.phi, simple)
+            .map(|check| check.depends_on(Dependence::Samples))
     }
 
     pub(super) fn along(&self, node: usize) -> Along {

@@ -6,7 +6,7 @@ use swimmer_model::Model;
 use super::flow::Touch;
 use super::search::{Candidate, FINER_SCAN, SCAN_POINTS, Search};
 use super::start_family::{families, families_on_the_diagonal};
-use super::{DisplacementError, DisplacementProblem, Fates, Heading, certified};
+use super::{DisplacementError, DisplacementProblem, ExtremalOutcomes, Heading, certified};
 use crate::momentum::Motion;
 use crate::optimal_gait::OptimalGait;
 use crate::region::Region;
@@ -19,7 +19,7 @@ pub(super) fn candidates(
     model: &Model<f64>,
     region: &Region,
     places: usize,
-) -> (Vec<Candidate>, Fates) {
+) -> (Vec<Candidate>, ExtremalOutcomes) {
     let sign = heading.sign();
     let search = Search {
         model,
@@ -33,11 +33,11 @@ pub(super) fn candidates(
             .map(|touch| families_on_the_diagonal(flow, region, &families, touch));
         families.extend(inwards.into_iter().chain(outwards));
     }
-    let (mut found, fates) = search.candidates(&families, places);
+    let (mut found, outcomes) = search.candidates(&families, places);
     found.retain(|candidate| sign * candidate.quarter.end[2] > 0.0);
     let carried = |candidate: &Candidate| candidate.quarter.end[2].abs();
     found.sort_by(|a, b| carried(b).total_cmp(&carried(a)));
-    (found, fates)
+    (found, outcomes)
 }
 
 /// The best gait of one sense that is certified among gaits with the paper's symmetries.
@@ -48,10 +48,10 @@ pub(super) fn best(
     region: &Region,
 ) -> Result<OptimalGait, DisplacementError> {
     let scan = |places| candidates(&problem.bounds, heading, model, region, places);
-    let (mut found, mut fates) = scan(SCAN_POINTS);
+    let (mut found, mut outcomes) = scan(SCAN_POINTS);
     // If many are lost, a finer scan only loses more.
-    if found.is_empty() && 8 * fates.lost <= fates.sent {
-        (found, fates) = scan(FINER_SCAN);
+    if found.is_empty() && 8 * outcomes.lost <= outcomes.sent {
+        (found, outcomes) = scan(FINER_SCAN);
     }
     let mut refused = None;
     for candidate in &found {
@@ -72,11 +72,11 @@ pub(super) fn best(
             failed: gait.certificate.failures(),
         },
         None if problem.bounds == Bounds::default() => {
-            DisplacementError::NoUnboundedOptimum { fates }
+            DisplacementError::NoUnboundedOptimum { outcomes }
         }
         None => DisplacementError::NoOptimum {
             heading: Some(heading),
-            fates,
+            outcomes,
         },
     })
 }

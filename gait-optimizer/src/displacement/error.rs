@@ -7,9 +7,9 @@ use crate::immobile::Immobile;
 use crate::optimal_gait::OptimalGait;
 use crate::problem::InvalidProblem;
 
-/// Fates of the extremals that the search traced.
+/// Outcomes of the extremals that the search traced.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Fates {
+pub struct ExtremalOutcomes {
     /// Number of quarters traced.
     pub sent: usize,
     /// Reached φ₁ = −φ₂.
@@ -26,7 +26,7 @@ pub struct Fates {
     pub lost: usize,
 }
 
-impl Fates {
+impl ExtremalOutcomes {
     /// Those of two searches.
     fn and(self, more: &Self) -> Self {
         Self {
@@ -44,7 +44,7 @@ impl Fates {
     }
 }
 
-impl fmt::Display for Fates {
+impl fmt::Display for ExtremalOutcomes {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
@@ -81,15 +81,15 @@ pub enum DisplacementError {
     )]
     NoUnboundedOptimum {
         /// Counts of how the traced quarters ended.
-        fates: Fates,
+        outcomes: ExtremalOutcomes,
     },
     /// Under these bounds there is no optimum with this sign of X.
     #[error("{}", no_optimum(*.heading))]
     NoOptimum {
         /// Requested sense; `None` for either.
         heading: Option<Heading>,
-        /// Fates of the extremals.
-        fates: Fates,
+        /// Outcomes of the extremals.
+        outcomes: ExtremalOutcomes,
     },
     /// The best gait with the paper's symmetries is a saddle among all closed curves.
     #[error(
@@ -117,14 +117,17 @@ impl DisplacementError {
     /// The reason why neither sense has a gait: that of the sense that came closer to one.
     pub(crate) fn or_backwards(self, backwards: Self) -> Self {
         match (self, backwards) {
-            (Self::NoUnboundedOptimum { fates }, Self::NoUnboundedOptimum { fates: more }) => {
-                let fates = fates.and(&more);
-                Self::NoUnboundedOptimum { fates }
+            (
+                Self::NoUnboundedOptimum { outcomes },
+                Self::NoUnboundedOptimum { outcomes: more },
+            ) => {
+                let outcomes = outcomes.and(&more);
+                Self::NoUnboundedOptimum { outcomes }
             }
-            (Self::NoOptimum { fates, .. }, Self::NoOptimum { fates: more, .. }) => {
+            (Self::NoOptimum { outcomes, .. }, Self::NoOptimum { outcomes: more, .. }) => {
                 Self::NoOptimum {
                     heading: None,
-                    fates: fates.and(&more),
+                    outcomes: outcomes.and(&more),
                 }
             }
             (Self::NoOptimum { .. } | Self::NoUnboundedOptimum { .. }, closer) => closer,
@@ -135,11 +138,11 @@ impl DisplacementError {
     /// Summary of the search in the terms of the maximum principle. Returns `None` if the error is complete without it.
     pub fn details(&self) -> Option<String> {
         match self {
-            Self::NoUnboundedOptimum { fates } => Some(format!(
+            Self::NoUnboundedOptimum { outcomes } => Some(format!(
                 "a gait without bounds follows a zero-level curve of the height function from phi1 = phi2 to phi1 = -phi2 and \
-                 ends with lambda4 = 0: {fates}"
+                 ends with lambda4 = 0: {outcomes}"
             )),
-            Self::NoOptimum { fates, .. } => Some(fates.to_string()),
+            Self::NoOptimum { outcomes, .. } => Some(outcomes.to_string()),
             Self::Saddle { gait } => Some(format!(
                 "it carries X/L = {:.6}; it fails {}",
                 gait.displacement_over_length,

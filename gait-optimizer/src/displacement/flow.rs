@@ -91,7 +91,7 @@ pub(crate) enum TraceEnd {
 pub(crate) struct Quarter {
     pub(crate) legs: Vec<Leg>,
     pub(crate) met: DiagonalContacts,
-    pub(crate) fate: TraceEnd,
+    pub(crate) outcome: TraceEnd,
     pub(crate) end: State,
 }
 
@@ -107,7 +107,7 @@ impl Quarter {
             let end = self.end[1] - self.end[0];
             (end - to) * (to - from) > 0.0
         });
-        self.fate == TraceEnd::Ended && beyond
+        self.outcome == TraceEnd::Ended && beyond
     }
 
     /// Continuation along φ₁ = −φ₂ of a quarter that ends there. Returns `None` if that line is no bound or another bound is in
@@ -118,7 +118,7 @@ impl Quarter {
         (flow, region): (Flow<'_>, &Region),
         options: TraceOptions,
     ) -> Option<Self> {
-        if self.fate != TraceEnd::Ended || self.touched() {
+        if self.outcome != TraceEnd::Ended || self.touched() {
             return None;
         }
         let motion = along_the_end(region, &self.end, touch)?;
@@ -131,7 +131,7 @@ impl Quarter {
 }
 
 /// Legs that have a length.
-pub(super) fn lasting(legs: &[Leg]) -> impl Iterator<Item = &Leg> {
+pub(super) fn nonempty_legs(legs: &[Leg]) -> impl Iterator<Item = &Leg> {
     legs.iter().filter(|leg| leg.to[5] > leg.from[5])
 }
 
@@ -153,7 +153,7 @@ pub(crate) fn follow(
         longest: LONGEST_CURVE,
     };
     let mut met = options.met;
-    let (legs, fate) = tracer.chain(start, MOST_ARCS, |tracer, leg, event| {
+    let (legs, outcome) = tracer.chain(start, MOST_ARCS, |tracer, leg, event| {
         let edge = leg.motion.track().and_then(|track| track.wall.edge());
         if is_start_line(edge) {
             met = met.and_started(&leg.to);
@@ -194,7 +194,7 @@ pub(crate) fn follow(
         end: legs.last().map_or(start, |leg| leg.to),
         legs,
         met,
-        fate: fate.unwrap_or(TraceEnd::TooManyArcs),
+        outcome: outcome.unwrap_or(TraceEnd::TooManyArcs),
     }
 }
 

@@ -9,8 +9,8 @@ mod shot;
 
 use swimmer_model::Model;
 
-use super::Fates;
-use super::flow::{FINE, Quarter, Touch, lasting};
+use super::ExtremalOutcomes;
+use super::flow::{FINE, Quarter, Touch, nonempty_legs};
 use super::start_family::StartFamily;
 use crate::arcs::{SMOOTH, sampled};
 use crate::cycle::Cycle;
@@ -30,7 +30,7 @@ pub(crate) struct Candidate {
 impl Candidate {
     /// The cycle in `4 samples` samples at equal steps of power length. Returns `None` if it cannot be traced.
     pub(crate) fn cycle(&self, model: &Model<f64>, samples: usize) -> Option<Cycle> {
-        let legs = || lasting(&self.quarter.legs);
+        let legs = || nonempty_legs(&self.quarter.legs);
         let mut start = legs().next()?.from;
         start[5] = 0.0;
         let route: Vec<_> = legs()
@@ -92,31 +92,38 @@ impl<'a> Search<'a> {
         &self,
         families: &[StartFamily],
         places: usize,
-    ) -> (Vec<Candidate>, Fates) {
-        let mut fates = Fates::default();
+    ) -> (Vec<Candidate>, ExtremalOutcomes) {
+        let mut outcomes = ExtremalOutcomes::default();
         let mut found = Vec::new();
         for family in families {
-            self.scan(family, places, &mut fates, &mut found);
+            self.scan(family, places, &mut outcomes, &mut found);
             found.extend(self.never_leaving(family));
         }
-        (found, fates)
+        (found, outcomes)
     }
 
     fn scan(
         &self,
         family: &StartFamily,
         places: usize,
-        fates: &mut Fates,
+        outcomes: &mut ExtremalOutcomes,
         found: &mut Vec<Candidate>,
     ) {
         let [low, high] = family.range();
-        let place = |look: usize| low + (high - low) * (look as f64 + 0.5) / places as f64;
+        let place =
+            |extremals_at: usize| low + (high - low) * (extremals_at as f64 + 0.5) / places as f64;
         let mut looks: Vec<ScanPoint> = (0..places)
-            .map(|look| (place(look), self.look(family, place(look), fates)))
+            .map(|extremals_at| {
+                (
+                    place(extremals_at),
+                    self.extremals_at(family, place(extremals_at), outcomes),
+                )
+            })
             .collect();
         // Between the outermost places and the family's own ends, where its arc shrinks to nothing.
         let [before, after] = [(looks.first(), low), (looks.last(), high)].map(|(last, end)| {
-            let (p, misses) = last.filter(|look| look.1.iter().any(Option::is_some))?;
+            let (p, misses) =
+                last.filter(|extremals_at| extremals_at.1.iter().any(Option::is_some))?;
             let p = end + 1e-7 * (p - end);
             Some((p, self.misses(family, p, misses.map(|miss| miss.is_some()))))
         });
@@ -129,10 +136,15 @@ impl<'a> Search<'a> {
     }
 
     /// The extremals of the scan at one place.
-    fn look(&self, family: &StartFamily, p: f64, fates: &mut Fates) -> [Option<Miss>; 3] {
+    fn extremals_at(
+        &self,
+        family: &StartFamily,
+        p: f64,
+        outcomes: &mut ExtremalOutcomes,
+    ) -> [Option<Miss>; 3] {
         let shot = self.shoot(family, p, COARSE);
         if family.may(Touch::Ends) {
-            fates.count(shot.as_ref());
+            outcomes.count(shot.as_ref());
         }
         self.misses_of(shot.as_ref(), family, [true; 3])
     }

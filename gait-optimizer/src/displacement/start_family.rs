@@ -8,7 +8,8 @@ use swimmer_files::{ArcKind, Bounds};
 use swimmer_model::Model;
 
 use super::flow::{
-    DiagonalContacts, FINE, Quarter, Touch, TraceEnd, TraceOptions, follow, is_end_line, lasting,
+    DiagonalContacts, FINE, Quarter, Touch, TraceEnd, TraceOptions, follow, is_end_line,
+    nonempty_legs,
 };
 use crate::arcs::Leg;
 use crate::momentum::{Flow, Momentum, Motion, State, Track, pose, shape};
@@ -76,7 +77,7 @@ pub(crate) fn families(flow: Flow<'_>, bounds: &Bounds, region: &Region) -> Vec<
         };
         let way = along_bounds(flow, region, start, false);
         let stretches = stretches(&way.legs);
-        if way.fate == TraceEnd::Ended && !stretches.is_empty() {
+        if way.outcome == TraceEnd::Ended && !stretches.is_empty() {
             families.push(StartFamily::Bounds { stretches });
         }
     }
@@ -177,7 +178,7 @@ fn stretches(legs: &[Leg]) -> Vec<Stretch> {
             span: [begins, p],
         })
     };
-    lasting(legs).filter_map(stretch).collect()
+    nonempty_legs(legs).filter_map(stretch).collect()
 }
 
 /// First point on a bound towards φ₁ = −φ₂, where it meets φ₁ = φ₂ > 0, and the direction along the bound from there.

@@ -103,22 +103,22 @@ pub(super) fn with(middle: f64, chi: f64) -> Swimmer<f64> {
 fn neither_sense_has_an_optimum() {
     let free = DisplacementProblem::new(Swimmer::robot());
     let sent = |problem: &DisplacementProblem| match displacement(problem) {
-        Err(DisplacementError::NoUnboundedOptimum { fates }) => fates.sent,
+        Err(DisplacementError::NoUnboundedOptimum { outcomes }) => outcomes.sent,
         other => panic!("{other:?}"),
     };
     let each = [Heading::Forwards, Heading::Backwards].map(|heading| sent(&free.heading(heading)));
     assert_eq!(sent(&free), each[0] + each[1]);
-    let fates = Fates::default();
+    let outcomes = ExtremalOutcomes::default();
     let no = |heading| DisplacementError::NoOptimum {
         heading: Some(heading),
-        fates,
+        outcomes,
     };
     let neither = no(Heading::Forwards).or_backwards(no(Heading::Backwards));
     assert_eq!(
         neither,
         DisplacementError::NoOptimum {
             heading: None,
-            fates
+            outcomes
         }
     );
     // A gait that fails its certificate gives a more specific error than an empty search.

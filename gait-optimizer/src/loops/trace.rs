@@ -17,7 +17,7 @@ const LASTING: f64 = 1e-9;
 
 /// Samples a loop with about this number of samples, from its outermost crossing of φ₁ = φ₂ > 0, or from its own start.
 pub(crate) fn traced(model: &Model<f64>, orbit: &ClosedOrbit, samples: usize) -> Option<Cycle> {
-    let home = home(model, orbit, &lasting(orbit));
+    let home = home(model, orbit, &nonempty_legs(orbit));
     traced_from(model, orbit, home, samples)
 }
 
@@ -29,9 +29,9 @@ pub(crate) fn traced_from(
     samples: usize,
 ) -> Option<Cycle> {
     let total = orbit.end[5];
-    let legs = lasting(orbit);
+    let legs = nonempty_legs(orbit);
     let (first, state) = start.unwrap_or((0, legs.first()?.from));
-    let momentum = orbit.momentum.seen_from(&pose(&state));
+    let momentum = orbit.momentum.in_frame_of(&pose(&state));
     let mut route: Vec<(Motion, f64)> = Vec::with_capacity(legs.len() + 1);
     let leg = legs.get(first)?;
     route.push((leg.motion, leg.to[5] - state[5]));
@@ -88,7 +88,7 @@ fn crossing(system: &ByPower<'_>, from: &Point<6>, step: f64) -> Option<State> {
 }
 
 /// Arcs of finite length.
-fn lasting(orbit: &ClosedOrbit) -> Vec<Leg> {
+fn nonempty_legs(orbit: &ClosedOrbit) -> Vec<Leg> {
     let total = orbit.end[5];
     let legs = orbit.legs.iter();
     legs.filter(|leg| leg.to[5] - leg.from[5] > LASTING * total)

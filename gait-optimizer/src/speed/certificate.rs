@@ -17,7 +17,7 @@ use swimmer_model::{Model, Tolerance, crossing_share, swim};
 
 pub(crate) use super::setting::GaitRequirements;
 use super::setting::{Goal, Setting};
-use crate::certificate::{Certificate, Check, Condition, SeenBy, again_within};
+use crate::certificate::{Certificate, Check, Condition, Dependence, again_within};
 use crate::cycle::Cycle;
 use crate::member::Member;
 use crate::region::Region;
@@ -133,7 +133,9 @@ fn of_the_curve(
         checks.push(Condition::NothingFolded.check(folds));
     }
     let checks = checks.into_iter();
-    checks.map(|check| check.seen_by(SeenBy::Samples)).collect()
+    checks
+        .map(|check| check.depends_on(Dependence::Samples))
+        .collect()
 }
 
 /// Returns true if an arc lies on a bound.

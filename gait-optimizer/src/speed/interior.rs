@@ -158,17 +158,17 @@ impl<'a> Method<'a> {
             penalty: 1.0,
         };
         for _ in 0..MOST_STEPS {
-            let look = self.look(&here)?;
-            if look.error(&here) < 10.0 * here.barrier {
+            let evaluate = self.evaluate(&here)?;
+            if evaluate.error(&here) < 10.0 * here.barrier {
                 if here.barrier <= last {
-                    return Some(self.finish(&here, look.net));
+                    return Some(self.finish(&here, evaluate.net));
                 }
                 here.barrier = (0.2 * here.barrier).min(here.barrier.powf(1.5)).max(last);
             }
-            let direction = self.direction(&mut here, &look)?;
+            let direction = self.direction(&mut here, &evaluate)?;
             if !self.move_along(&mut here, &direction) {
                 if here.barrier < 1e-6 {
-                    return Some(self.finish(&here, look.net));
+                    return Some(self.finish(&here, evaluate.net));
                 }
                 here.damping = (10.0 * here.damping).max(1e-2);
                 if here.damping > 1e6 {
@@ -177,11 +177,11 @@ impl<'a> Method<'a> {
             }
         }
         // Corners may slide along a straight way or a smooth curve, which costs steps and changes nothing.
-        let look = self.look(&here)?;
-        (here.barrier < 1e-5).then(|| self.finish(&here, look.net))
+        let evaluate = self.evaluate(&here)?;
+        (here.barrier < 1e-5).then(|| self.finish(&here, evaluate.net))
     }
 
-    fn look(&self, here: &Iterate) -> Option<Evaluation> {
+    fn evaluate(&self, here: &Iterate) -> Option<Evaluation> {
         let Iterate { z, y, .. } = here;
         let layout = &self.layout;
         let jets = layout.jets(self.setting.model, &self.rule, z);
@@ -217,12 +217,12 @@ impl<'a> Method<'a> {
     }
 
     /// Second derivatives with the inequalities eliminated, and minus the barrier's gradient.
-    fn system(&self, here: &Iterate, look: &Evaluation) -> (DMatrix<f64>, DVector<f64>) {
-        let of = (&self.layout, &self.rule, look.jets.as_slice());
-        let with = (&look.net, here.y.as_slice());
+    fn system(&self, here: &Iterate, evaluate: &Evaluation) -> (DMatrix<f64>, DVector<f64>) {
+        let of = (&self.layout, &self.rule, evaluate.jets.as_slice());
+        let with = (&evaluate.net, here.y.as_slice());
         let mut matrix = self.setting.hessian(of, &here.z, with);
-        let mut right = -&look.gradient;
-        for (one, push) in look.inequalities.iter().zip(&here.pushes) {
+        let mut right = -&evaluate.gradient;
+        for (one, push) in evaluate.inequalities.iter().zip(&here.pushes) {
             let stiffness = push / one.value;
             for &(i, a) in one.slope() {
                 right[i] += here.barrier / one.value * a;
@@ -240,7 +240,7 @@ impl<'a> Method<'a> {
         }
         // With a large weight on the equalities, the matrix is definite only if the Hessian is convex along them.
         let scale = 10.0 * matrix.diagonal().amax().clamp(1.0, 1e4);
-        for (value, slope) in look.values.iter().zip(&look.slopes) {
+        for (value, slope) in evaluate.values.iter().zip(&evaluate.slopes) {
             let weight = scale / slope.norm_squared().max(1e-12);
             matrix.ger(weight, slope, slope, 1.0);
             right -= slope * (weight * value);
@@ -248,8 +248,8 @@ impl<'a> Method<'a> {
         (matrix, right)
     }
 
-    fn direction(&self, here: &mut Iterate, look: &Evaluation) -> Option<Direction> {
-        let (matrix, right) = self.system(here, look);
+    fn direction(&self, here: &mut Iterate, evaluate: &Evaluation) -> Option<Direction> {
+        let (matrix, right) = self.system(here, evaluate);
         let (step, dy) = loop {
             let mut damped = matrix.clone();
             for i in 0..self.layout.size {
@@ -261,7 +261,7 @@ impl<'a> Method<'a> {
                 } else {
                     here.damping / 4.0
                 };
-                break newton_step(&factors, &right, &look.values, &look.slopes)?;
+                break newton_step(&factors, &right, &evaluate.values, &evaluate.slopes)?;
             }
             here.damping = (4.0 * here.damping).max(1e-4);
             if here.damping > 1e8 {
@@ -270,7 +270,7 @@ impl<'a> Method<'a> {
         };
         let (mut longest, mut dual_longest) = (1.0_f64, 1.0_f64);
         let mut pushes = Vec::with_capacity(here.pushes.len());
-        for (one, push) in look.inequalities.iter().zip(&here.pushes) {
+        for (one, push) in evaluate.inequalities.iter().zip(&here.pushes) {
             let along: f64 = one.slope().iter().map(|(at, a)| a * step[*at]).sum();
             if along < 0.0 && one.curved.is_none() {
                 longest = longest.min(-SHARE * one.value / along);

@@ -69,11 +69,11 @@ pub(crate) fn polish(setting: &Setting, links: &[Link]) -> Option<Polished> {
     let Solution {
         z,
         y,
-        look,
+        evaluate,
         convexity,
         ..
     } = solution;
-    let net = look.net;
+    let net = evaluate.net;
     let mut hold_pushes = vec![Vec::new(); links.len()];
     for (equation, push) in equations.iter().zip(y.iter().skip(conditions.global())) {
         if let Equation::Held { corner, .. } = equation {
@@ -108,8 +108,8 @@ pub(crate) fn second_variation(setting: &Setting, links: &[Link]) -> Option<f64>
         rule: &rule,
         equations: &equations(setting, links),
     };
-    let y = conditions.look(&z, None)?.nearest_multipliers()?;
-    Some(conditions.look(&z, Some(&y))?.convexity().0)
+    let y = conditions.evaluate(&z, None)?.nearest_multipliers()?;
+    Some(conditions.evaluate(&z, Some(&y))?.convexity().0)
 }
 
 /// A chain as unknowns.
@@ -135,7 +135,7 @@ fn written(setting: &Setting, links: &[Link]) -> (Layout, DVector<f64>) {
 struct Solution {
     z: DVector<f64>,
     y: DVector<f64>,
-    look: Expansion,
+    evaluate: Expansion,
     /// Least eigenvalue of the second variation, and its shift.
     convexity: f64,
     weakest: DVector<f64>,
@@ -143,12 +143,12 @@ struct Solution {
 
 /// Newton's method from `z`. Returns `None` if it does not converge.
 fn solve(conditions: &Conditions, mut z: DVector<f64>) -> Option<Solution> {
-    let mut y = conditions.look(&z, None)?.nearest_multipliers()?;
+    let mut y = conditions.evaluate(&z, None)?.nearest_multipliers()?;
     let mut best = f64::INFINITY;
     let mut stalls = 0;
     for _ in 0..MOST_STEPS {
-        let look = conditions.look(&z, Some(&y))?;
-        let residual = look.residual(&y);
+        let evaluate = conditions.evaluate(&z, Some(&y))?;
+        let residual = evaluate.residual(&y);
         if residual < ROUNDING {
             break;
         }
@@ -160,20 +160,20 @@ fn solve(conditions: &Conditions, mut z: DVector<f64>) -> Option<Solution> {
         if stalls > 12 {
             return None;
         }
-        let (step, next) = look.step()?;
+        let (step, next) = evaluate.step()?;
         let scale = (0.3 / step.amax()).min(1.0);
         z += step * scale;
         y = next;
     }
-    let look = conditions.look(&z, Some(&y))?;
-    if look.residual(&y) > 1e-9 {
+    let evaluate = conditions.evaluate(&z, Some(&y))?;
+    if evaluate.residual(&y) > 1e-9 {
         return None;
     }
-    let (convexity, weakest) = look.convexity();
+    let (convexity, weakest) = evaluate.convexity();
     Some(Solution {
         z,
         y,
-        look,
+        evaluate,
         convexity,
         weakest,
     })
@@ -199,8 +199,8 @@ fn beyond_the_fold(conditions: &Conditions, saddle: &Solution) -> Option<Solutio
         ..
     } = saddle;
     let bend = |t: f64| {
-        let look = conditions.look(&(z + weakest * t), Some(y))?;
-        Some(weakest.dot(&(&look.hessian * weakest)))
+        let evaluate = conditions.evaluate(&(z + weakest * t), Some(y))?;
+        Some(weakest.dot(&(&evaluate.hessian * weakest)))
     };
     let third = (bend(STEP)? - bend(-STEP)?) / (2.0 * STEP);
     let shift = -2.0 * convexity / third;

@@ -161,10 +161,10 @@ fn robot_within_an_upper_bound() {
 #[test]
 fn the_robot_has_no_optimum_without_bounds() {
     let error = displacement(&DisplacementProblem::new(Swimmer::robot())).unwrap_err();
-    let DisplacementError::NoUnboundedOptimum { fates } = &error else {
+    let DisplacementError::NoUnboundedOptimum { outcomes } = &error else {
         panic!("{error}");
     };
-    assert!(fates.came_back > 0 && fates.sent > fates.ended);
+    assert!(outcomes.came_back > 0 && outcomes.sent > outcomes.ended);
     assert!(error.to_string().contains("--max-angle"));
     // One sentence for people; the numbers stand in the details.
     assert!(!error.to_string().contains("lambda4"));

@@ -19,7 +19,7 @@ pub(crate) struct Bench {
 impl Bench {
     /// Samples the jumper. A closing edge opens the window. A jumper that stays closed does not extend it: a forgotten jumper
     /// is no presence.
-    pub(crate) fn look(&mut self, now_us: u64, closed: bool) {
+    pub(crate) fn sample(&mut self, now_us: u64, closed: bool) {
         if closed && !self.closed {
             self.open_until_us = now_us.saturating_add(WINDOW_US);
         }
@@ -60,16 +60,16 @@ mod tests {
     fn the_window_opens_when_the_jumper_closes_and_for_two_minutes() {
         let mut bench = Bench::default();
         assert!(!bench.open(0));
-        bench.look(5, true);
+        bench.sample(5, true);
         assert!(bench.open(5) && bench.open(WINDOW_US + 4) && !bench.open(WINDOW_US + 5));
         assert_eq!((bench.left_s(5), bench.left_s(6)), (120, 120));
         assert_eq!(bench.left_s(WINDOW_US + 4), 1);
         // The jumper was forgotten.
-        bench.look(2 * WINDOW_US, true);
+        bench.sample(2 * WINDOW_US, true);
         assert!(!bench.open(2 * WINDOW_US));
-        bench.look(2 * WINDOW_US, false);
+        bench.sample(2 * WINDOW_US, false);
         assert!(!bench.open(2 * WINDOW_US));
-        bench.look(2 * WINDOW_US, true);
+        bench.sample(2 * WINDOW_US, true);
         assert!(bench.open(2 * WINDOW_US));
     }
 

@@ -4,7 +4,7 @@ use std::mem::take;
 use std::time::Duration;
 
 use super::reply::{Lines, ReplyLine};
-use super::{Hc05Error, Module, Outcome, Setting, Uart, Wanted};
+use super::{Hc05Error, Module, ModuleSettings, Outcome, Setting, Uart};
 
 /// Time-out of a command. Some modules need most of a second to report their name.
 const PATIENCE: Duration = Duration::from_secs(2);
@@ -61,7 +61,7 @@ enum CommandOutcome {
 /// Dialogue with a module.
 #[derive(Debug)]
 pub struct Dialogue {
-    wanted: Wanted,
+    wanted: ModuleSettings,
     only_check: bool,
     step: Step,
     /// Time at which the present command was sent.
@@ -96,7 +96,7 @@ const SETTINGS: [Setting; 4] = [Setting::Role, Setting::Name, Setting::Pin, Sett
 
 impl Dialogue {
     /// Returns a dialogue at its start.
-    pub fn new(wanted: Wanted, only_check: bool) -> Self {
+    pub fn new(wanted: ModuleSettings, only_check: bool) -> Self {
         Self {
             wanted,
             only_check,

@@ -48,7 +48,7 @@ pub enum Hc05Error {
     },
     /// An earlier command succeeded, but this one got no reply.
     #[error(
-        "the HC-05 answered before, but not to `{command}`: keep its button (or KEY) held all the time, check the wires and try again; what was set already stays"
+        "the HC-05 answered before, but not to `{command}`: keep its button (or KEY) held all the time, check the wires and try again; settings made so far stay"
     )]
     Stopped {
         /// Last command.
@@ -95,7 +95,7 @@ fn code_advice(code: &str) -> &'static str {
 
 /// Reason why requested settings are invalid.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum WantedError {
+pub enum ModuleSettingsError {
     /// The speed is not supported by both ends.
     #[error("{baud} baud: the HC-05 and the robot share {}", BAUDS.map(|baud| baud.to_string()).join(", "))]
     Baud {

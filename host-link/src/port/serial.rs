@@ -69,7 +69,7 @@ pub enum OpenError {
 /// Serial port of the operating system, opened exclusively, with 8 data bits, no parity, 1 stop bit. Its clock starts when it
 /// is opened.
 ///
-/// On Unix the lock is advisory (`flock`), so [`super::BesidePort`] can bypass a hung program.
+/// On Unix the lock is advisory (`flock`), so [`super::OccupiedPort`] can bypass a hung program.
 #[derive(Debug)]
 pub struct SerialPort {
     port: Native,
@@ -295,7 +295,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("port");
         std::fs::write(&path, "").unwrap();
-        let told = |mode: u32| {
+        let modes = |mode: u32| {
             std::fs::set_permissions(&path, std::fs::Permissions::from_mode(mode)).unwrap();
             let denied = serialport::Error::new(
                 serialport::ErrorKind::Io(io::ErrorKind::PermissionDenied),
@@ -303,12 +303,12 @@ mod tests {
             );
             explain(path.to_str().unwrap(), &denied).to_string()
         };
-        let open_to_group = told(0o660);
+        let open_to_group = modes(0o660);
         assert!(
             open_to_group.contains("sudo usermod -aG ") && open_to_group.contains("$USER"),
             "{open_to_group}"
         );
-        let owner_only = told(0o600);
+        let owner_only = modes(0o600);
         assert!(
             owner_only.contains("only its owner") && !owner_only.contains("usermod"),
             "{owner_only}"

@@ -41,7 +41,7 @@ pub fn time_left(status: &Status) -> Option<Duration> {
 /// Known state of the play, and pending requests.
 struct Watch {
     /// Time of the robot's last report, on the port's clock.
-    told: Duration,
+    reported_at: Duration,
     /// End of the search for a silent robot.
     search_until: Duration,
     asked: Option<Ticket>,
@@ -56,12 +56,13 @@ impl Watch {
     /// Final status from telemetry, if the robot sends nothing else.
     fn last_word(&self, now: Duration) -> Option<Status> {
         let (since, telemetry) = self.ended.as_ref()?;
-        (now.saturating_sub(*since) >= LAST_WORD).then(|| told_by(telemetry, self.status.as_ref()))
+        (now.saturating_sub(*since) >= LAST_WORD)
+            .then(|| status_of(telemetry, self.status.as_ref()))
     }
 }
 
 /// Status derived from telemetry; the remaining fields come from an earlier status.
-fn told_by(telemetry: &Telemetry, before: Option<&Status>) -> Status {
+fn status_of(telemetry: &Telemetry, before: Option<&Status>) -> Status {
     Status {
         robot_us: telemetry.robot_us,
         state: telemetry.state,
@@ -115,7 +116,7 @@ impl<P: Port> Robot<P> {
         self.connection.latest = None;
         let now = self.connection.now();
         let mut known = Watch {
-            told: now,
+            reported_at: now,
             search_until: now + LONGEST_SILENCE,
             asked: Some(self.connection.session.request(now, Request::Status)),
             greeted: None,
@@ -156,7 +157,7 @@ fn learn<P: Port>(
     let now = connection.now();
     match event {
         Some(Event::Telemetry { telemetry, .. }) => {
-            known.told = now;
+            known.reported_at = now;
             known.search_until = known.search_until.max(now + LONGEST_SILENCE);
             if at_rest(telemetry.state, telemetry.cause) {
                 let since = known.ended.map_or(now, |(since, _)| since);
@@ -168,7 +169,7 @@ fn learn<P: Port>(
         }
         Some(Event::Answered { ticket, reply }) if known.asked == Some(ticket) => {
             known.asked = None;
-            known.told = now;
+            known.reported_at = now;
             if let Reply::Status(status) = reply {
                 known.status = Some(status);
                 if at_rest(status.state, status.cause) {
@@ -202,7 +203,7 @@ fn learn<P: Port>(
             known.greeted = Some(connection.session.connect(now));
         }
         _ => {
-            if now.saturating_sub(known.told) >= QUIET {
+            if now.saturating_sub(known.reported_at) >= QUIET {
                 ask_status(connection, known);
             }
         }

@@ -44,12 +44,12 @@ impl fmt::Display for Silence {
         match self {
             Self::Began { doing, silent } => write!(
                 f,
-                "while {doing}: nothing valid heard from the robot for {:.1} s; still trying",
+                "while {doing}: no valid frame from the robot for {:.1} s; still trying",
                 silent.as_secs_f64()
             ),
             Self::Ended { silent } => write!(
                 f,
-                "the robot is heard again after {:.1} s of silence",
+                "the robot replies again after {:.1} s of silence",
                 silent.as_secs_f64()
             ),
         }

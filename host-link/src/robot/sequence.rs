@@ -97,7 +97,7 @@ impl Sequence {
         }
         let (last, mut leg) = (self.legs.len().saturating_sub(1), self.playing);
         let waited = robot.wait_while(|telemetry| {
-            if telemetry.is_some_and(|told| !told.flags.contains(Flags::SWAP_PENDING)) {
+            if telemetry.is_some_and(|telemetry| !telemetry.flags.contains(Flags::SWAP_PENDING)) {
                 leg = last;
             }
             watch(SequenceProgress { leg, telemetry })

@@ -193,7 +193,7 @@ impl Session {
         pending.tries += 1;
         pending.last_sent = now;
         if pending.request.is_powering() {
-            self.told = None;
+            self.latest_telemetry = None;
         }
         let wait = self.trip.wait(pending.tries);
         pending.next_try = now + if stop { wait.min(STOP_WAIT) } else { wait };
@@ -310,8 +310,12 @@ impl Session {
 
     /// Returns true if the latest report of the robot shows pulses off.
     fn pulses_off(&self) -> bool {
-        self.told
-            .is_some_and(|told| matches!(told.state, StateName::Stopped | StateName::EStopped))
+        self.latest_telemetry.is_some_and(|latest_telemetry| {
+            matches!(
+                latest_telemetry.state,
+                StateName::Stopped | StateName::EStopped
+            )
+        })
     }
 
     /// Earliest time of the next keep-alive.
@@ -325,8 +329,8 @@ impl Session {
 
     /// Returns true if the robot continues without a link, so no lease has to be kept.
     fn unwatched(&self) -> bool {
-        self.told
-            .is_some_and(|told| told.flags.contains(Flags::DETACHED))
+        self.latest_telemetry
+            .is_some_and(|latest_telemetry| latest_telemetry.flags.contains(Flags::DETACHED))
     }
 
     fn feed_lease(&mut self, now: Duration) {

@@ -36,7 +36,7 @@ pub enum LinkError {
     },
     /// The link became silent during an operation without a limit on attempts.
     #[error(
-        "while {doing}: nothing valid heard for {} ms ({counters}); bring the robot nearer or reconnect, then try again: an upload goes on where it was",
+        "while {doing}: no valid frame for {} ms ({counters}); move the robot nearer or reconnect, then try again: an upload continues at its last offset",
         silent.as_millis()
     )]
     Silent {
@@ -118,7 +118,7 @@ pub enum LinkError {
     },
     /// The robot's greeting has a board or a reset reason that is newer than this program.
     #[error(
-        "the robot's firmware {firmware} is newer than this program and tells of itself what it does not know (a board, or a reason of its last reset): update this program"
+        "the robot's firmware {firmware} is newer than this program and reports a board or a reset cause that it does not know: update this program"
     )]
     UnknownGreeting {
         /// Firmware of the robot.
@@ -126,7 +126,7 @@ pub enum LinkError {
     },
     /// The robot's reply is newer than this program.
     #[error(
-        "while {doing}: the robot gave an answer that this program does not know, so its firmware is newer: update this program; whether the robot did it, its status tells"
+        "while {doing}: the robot gave an answer that this program does not know, so its firmware is newer: update this program; the robot's status shows if it acted"
     )]
     UnknownAnswer {
         /// Operation in progress.
@@ -141,9 +141,7 @@ pub enum LinkError {
         doing: &'static str,
     },
     /// A stop was sent before the reply.
-    #[error(
-        "while {doing}: dropped because a stop was sent; whether the robot did it, its status tells"
-    )]
+    #[error("while {doing}: dropped because a stop was sent; the robot's status shows if it acted")]
     Dropped {
         /// Operation in progress.
         doing: &'static str,
@@ -164,7 +162,7 @@ pub enum LinkError {
     },
     /// The kind of the reply does not match the request.
     #[error(
-        "while {doing}: the robot's answer is none to this request ({reply}); match firmware and program"
+        "while {doing}: the robot's reply does not belong to this request ({reply}); match firmware and program"
     )]
     WrongReply {
         /// Operation in progress.

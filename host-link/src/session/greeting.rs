@@ -50,7 +50,7 @@ impl Session {
         self.number = reply.session;
         self.seal = self.config.key.map(|key| Seal::new(&key, binding));
         (self.signed, self.proven) = (0, 0);
-        (self.last_robot_us, self.told) = (None, None);
+        (self.last_robot_us, self.latest_telemetry) = (None, None);
         self.beats = Beats::default();
         self.counters.sessions += 1;
         self.link = Link::Open(reply);

@@ -91,7 +91,7 @@ impl Session {
                 }
                 self.last_robot_us = Some(telemetry.robot_us);
                 self.counters.telemetry += 1;
-                self.told = Some(telemetry);
+                self.latest_telemetry = Some(telemetry);
                 self.stopped_by_itself(&telemetry, now);
                 self.events
                     .push_back(Event::Telemetry { telemetry, at: now });

@@ -9,17 +9,17 @@ pub struct Outage {
     /// Start, on the port's clock.
     pub from: Duration,
     /// Duration.
-    pub lasting: Duration,
+    pub duration: Duration,
     /// Period of repeated interruptions; `None` for a single one.
     pub every: Option<Duration>,
 }
 
 impl Outage {
-    /// Single interruption from `from` on, for `lasting`.
-    pub fn once(from: Duration, lasting: Duration) -> Self {
+    /// Single interruption from `from` on, for `duration`.
+    pub fn once(from: Duration, duration: Duration) -> Self {
         Self {
             from,
-            lasting,
+            duration,
             every: None,
         }
     }
@@ -35,7 +35,7 @@ impl Outage {
             }
             _ => since,
         };
-        since < self.lasting
+        since < self.duration
     }
 }
 
@@ -258,10 +258,10 @@ fn outage(value: &str) -> Result<Outage, FaultsProblem> {
         .collect::<Result<Vec<_>, _>>()
         .map_err(|_| bad())?;
     match times[..] {
-        [from, lasting] => Ok(Outage::once(from, lasting)),
-        [from, lasting, every] if every > lasting => Ok(Outage {
+        [from, duration] => Ok(Outage::once(from, duration)),
+        [from, duration, every] if every > duration => Ok(Outage {
             from,
-            lasting,
+            duration,
             every: Some(every),
         }),
         _ => Err(bad()),

@@ -203,7 +203,7 @@ fn a_lost_link_that_telemetry_tells_ends_the_wait_at_once() {
 /// Plays three cycles of eight seconds; the link is interrupted from 3 s after the start on.
 fn play_through_an_outage(
     detached: bool,
-    lasting: Duration,
+    duration: Duration,
 ) -> (Result<link_protocol::Status, LinkError>, Duration) {
     let mut robot = connect("", 12);
     upload(&mut robot, circle(1.0).bytes()).unwrap();
@@ -212,7 +212,7 @@ fn play_through_an_outage(
     let status = robot.status().unwrap();
     assert_eq!(time_left(&status), Some(MS * 24_000));
     let began = robot.port().now();
-    let outage = Outage::once(began + MS * 3000, lasting);
+    let outage = Outage::once(began + MS * 3000, duration);
     robot.port_mut().disconnect(outage);
     let end = robot.wait_until_finished(|_| ControlFlow::Continue(()));
     let took = robot.port().now().abs_diff(began);
@@ -221,12 +221,12 @@ fn play_through_an_outage(
 
 #[test]
 fn a_detached_play_is_found_again_and_seen_to_its_end() {
-    for lasting in [MS * 4000, MS * 20_000, MS * 45_000] {
-        let (end, took) = play_through_an_outage(true, lasting);
+    for duration in [MS * 4000, MS * 20_000, MS * 45_000] {
+        let (end, took) = play_through_an_outage(true, duration);
         let end = end.unwrap();
         assert_eq!((end.cause, end.cycle), (StopCause::Finished, 3));
         // End of the play, or of the interruption and one wait between two greetings.
-        let latest = (MS * 26_500).max(lasting + MS * 8000);
+        let latest = (MS * 26_500).max(duration + MS * 8000);
         assert!(took > MS * 24_000 && took < latest, "{took:?}");
     }
     // The end of the play is known: a robot that is absent half a minute later is given up.

@@ -3,10 +3,10 @@
 use crate::fake_module;
 
 use fake_module::{FakeModule, Maker, Trouble};
-use host_link::hc05::{Hc05Error, Outcome, Setting, Uart, Wanted, converse};
+use host_link::hc05::{Hc05Error, ModuleSettings, Outcome, Setting, Uart, converse};
 
-fn wanted() -> Wanted {
-    Wanted::new(115_200, Some("swimmer".to_owned()), Some("4711".to_owned())).unwrap()
+fn wanted() -> ModuleSettings {
+    ModuleSettings::new(115_200, Some("swimmer".to_owned()), Some("4711".to_owned())).unwrap()
 }
 
 fn set_up(module: &mut FakeModule) -> Result<Outcome, Hc05Error> {
@@ -55,7 +55,7 @@ fn a_check_changes_nothing() {
     assert_eq!(outcome.before.version.as_deref(), Some("2.0-20100601"));
     assert!(module.sets == 0 && !module.was_reset);
     // A setting that was not requested does not count as different.
-    let only_speed = Wanted::new(9600, None, None).unwrap();
+    let only_speed = ModuleSettings::new(9600, None, None).unwrap();
     let outcome = converse(&mut module, &only_speed, true).unwrap();
     assert_eq!(outcome.differed, [Setting::Role]);
 }

@@ -1,6 +1,5 @@
 //! Tests of the host's side of the link.
 
-mod answers;
 mod brain;
 mod fake_module;
 mod haste;
@@ -9,6 +8,7 @@ mod key;
 mod matrix;
 #[cfg(unix)]
 mod pty;
+mod replies;
 mod scripted;
 mod session;
 mod sessions;

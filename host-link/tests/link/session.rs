@@ -478,7 +478,7 @@ fn an_upload_waits_five_seconds_of_silence_and_no_longer() {
     assert!(script.outcome(upload).is_none());
     script.run_to(MS * 5_100);
     let error = script.outcome(upload).unwrap().unwrap_err();
-    assert!(error.contains("nothing valid heard for 5000 ms"), "{error}");
+    assert!(error.contains("no valid frame for 5000 ms"), "{error}");
 }
 
 #[test]

@@ -60,7 +60,7 @@ fn random_faults(rng: &mut ChaCha8Rng) -> Faults {
     if rng.random_bool(0.4) {
         faults.disconnect = Some(Outage {
             from: MS * rng.random_range(500..8000),
-            lasting: MS * rng.random_range(100..9000),
+            duration: MS * rng.random_range(100..9000),
             every: Some(MS * rng.random_range(12_000..40_000)),
         });
     }

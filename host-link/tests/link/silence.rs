@@ -52,9 +52,9 @@ fn began(reports: &Reports, doing: &str) {
     assert_eq!(reports.iter().filter(begins).count(), 1, "{reports:?}");
 }
 
-fn cut(robot: &mut Robot<FaultyLine>, after: Duration, lasting: Duration) {
+fn cut(robot: &mut Robot<FaultyLine>, after: Duration, duration: Duration) {
     let from = robot.port().now() + after;
-    robot.port_mut().disconnect(Outage::once(from, lasting));
+    robot.port_mut().disconnect(Outage::once(from, duration));
 }
 
 type Call = (

@@ -122,7 +122,7 @@ fn a_long_disconnection_is_an_error_and_the_next_upload_resumes() {
     assert!(matches!(error, LinkError::Silent { .. }), "{error}");
     let text = error.to_string();
     assert!(
-        text.contains("nothing valid heard for 50") && text.contains("frames"),
+        text.contains("no valid frame for 50") && text.contains("frames"),
         "{text}"
     );
     robot.port_mut().inner_mut().pass(MS * 5000);

@@ -7,7 +7,7 @@ mod outputs;
 
 use calibrate::{
     Assessment, CampaignFit, Evidence, EvidenceOptions, FitOptions, NuisanceParameter,
-    TrackOptions, advise, assess, calibrate_campaign, fit_further, survey_tracks, weigh_evidence,
+    TrackOptions, advise, assess, calibrate_campaign, fit_nuisance, survey_tracks, weigh_evidence,
 };
 use serde::Deserialize;
 use swimmer_files::Campaign;
@@ -101,7 +101,7 @@ fn further(lab: &mut Lab, bytes: &[u8]) -> Outcome {
             .ok_or_else(|| format!("fitting `{word}` also: there is no such word"))
     };
     let wanted = also.iter().map(of_word).collect::<Result<Vec<_>, _>>()?;
-    let fit = fit_further(&fitted.found, &wanted).map_err(|why| why.to_string())?;
+    let fit = fit_nuisance(&fitted.found, &wanted).map_err(|why| why.to_string())?;
     json(&NuisanceOutput::new(&fit))
 }
 

@@ -74,7 +74,7 @@ pub fn call(lab: &mut Lab, name: &[u8], bytes: &[u8]) -> Outcome {
 /// # Errors
 /// The JSON is invalid or lacks a key.
 pub fn parsed<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, String> {
-    serde_json::from_slice(bytes).map_err(|why| format!("reading what the page asked: {why}"))
+    serde_json::from_slice(bytes).map_err(|why| format!("reading the page's request: {why}"))
 }
 
 /// Returns an output as JSON.
@@ -139,7 +139,7 @@ mod tests {
         let reason = call(&mut lab, b"swim!", b"{}").unwrap_err();
         assert!(reason.contains("`swim!`"), "{reason}");
         let reason = call(&mut lab, b"simulate", b"{").unwrap_err();
-        assert!(reason.contains("reading what the page asked"), "{reason}");
+        assert!(reason.contains("reading the page's request"), "{reason}");
     }
 
     #[test]

@@ -18,7 +18,7 @@ pub(super) fn designs(source: &Text<'_>, raw: &Raw) -> Result<(Vec<Axis>, Design
             .ok_or_else(|| {
                 source.wrong(
                     span.clone(),
-                    format!("a {kind} design needs count = how many points"),
+                    format!("a {kind} design needs count = the number of points"),
                 )
             })
     };
@@ -48,7 +48,7 @@ pub(super) fn designs(source: &Text<'_>, raw: &Raw) -> Result<(Vec<Axis>, Design
         other => {
             return Err(source.wrong(
                 span,
-                format!("design = \"{other}\" is none of grid, random and sobol"),
+                format!("design = \"{other}\" is not one of grid, random and sobol"),
             ));
         }
     };
@@ -128,7 +128,7 @@ fn axis(source: &Text<'_>, told: &Spanned<RawAxis>, grid: bool) -> Result<Axis, 
             to: number(to)?,
             count: match (&raw.count, grid) {
                 (Some(count), true) => *count.get_ref(),
-                (None, true) => return wrong("a grid needs count = how many values"),
+                (None, true) => return wrong("a grid needs count = the number of values"),
                 (Some(_), false) => return wrong("count belongs to the whole design here"),
                 (None, false) => 0,
             },

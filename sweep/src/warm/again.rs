@@ -15,7 +15,7 @@ const BETTER: f64 = 1e-7;
 
 impl Visit<'_> {
     /// Compares all neighbours among these tasks.
-    pub(super) fn look_again(&mut self, keys: &Range<u64>) {
+    pub(super) fn compare_neighbours(&mut self, keys: &Range<u64>) {
         // Version of each task's result, and the versions that were tried for each neighbour.
         let mut version: BTreeMap<u64, u64> = BTreeMap::new();
         let mut tried: BTreeSet<(u64, u64, u64)> = BTreeSet::new();

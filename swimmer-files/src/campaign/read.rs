@@ -7,8 +7,8 @@ use toml::Spanned;
 use super::body::body;
 use super::known;
 use super::raw::{RawCampaign, RawPoint, RawReflector, RawReflectors, RawRun, RawTracks};
+use super::reported;
 use super::table::table;
-use super::told;
 use super::{Campaign, CampaignRun, PointName, Reflector, Reflectors, RunTiming, TrackSettings};
 use crate::{FileError, GaitSpec, Quantity, SwimmerFile};
 
@@ -29,8 +29,8 @@ pub(super) fn campaign(
     })?;
     let is_preset = SwimmerFile::preset(raw.swimmer.get_ref()).is_some();
     let swimmer_path = (!is_preset).then(|| folder.join(raw.swimmer.get_ref()));
-    let reflectors = if let Some(told) = raw.reflectors {
-        reflectors(told, swimmer.swimmer.links.middle / 2.0, &error)?
+    let reflectors = if let Some(reported) = raw.reflectors {
+        reflectors(reported, swimmer.swimmer.links.middle / 2.0, &error)?
     } else {
         // Only a track needs them.
         if let Some(track) = raw.run.iter().find_map(|run| run.track.as_ref()) {
@@ -52,9 +52,9 @@ pub(super) fn campaign(
         .run
         .into_iter()
         .map(|raw| {
-            let told = raw.track.is_none();
-            if told {
-                told_runs(&raw, (text, path), &error)
+            let reported = raw.track.is_none();
+            if reported {
+                reported_runs(&raw, (text, path), &error)
             } else {
                 Ok(vec![run(raw, folder, is_there, &error)?])
             }
@@ -272,7 +272,7 @@ fn run(
     }
     let run = CampaignRun {
         track: folder.join(track.into_inner()),
-        told: None,
+        reported: None,
         gait: gait.from_folder(folder),
         period_s,
         front: front.transpose()?,
@@ -319,7 +319,7 @@ fn excluded(
 }
 
 /// The runs of a `[[run]]` without a track: one by its numbers, or those of a table.
-fn told_runs(
+fn reported_runs(
     raw: &RawRun,
     (text, path): (&str, &Path),
     error: &impl Fn(usize, String) -> FileError,
@@ -331,9 +331,9 @@ fn told_runs(
         return Err(error(place, problem));
     }
     let (period_s, exclude) = (period(raw, error)?, excluded(raw, error)?);
-    let run = |track, gait: GaitSpec, told| CampaignRun {
+    let run = |track, gait: GaitSpec, reported| CampaignRun {
         track,
-        told: Some(told),
+        reported: Some(reported),
         gait: gait.from_folder(folder),
         period_s,
         front: None,
@@ -342,7 +342,7 @@ fn told_runs(
     };
     let number = |key: &str| raw.number(key).map(|number| *number.get_ref());
     let Some(results) = &raw.results else {
-        let told = told::told(number).map_err(|(key, problem)| {
+        let reported = reported::reported(number).map_err(|(key, problem)| {
             let place = raw.number(&key).map_or(gait_place, |n| n.span().start);
             let problem = if key.is_empty() {
                 format!("{problem}; with one, track is the path of its tracking file")
@@ -353,9 +353,9 @@ fn told_runs(
         })?;
         let gait = raw.gait.get_ref().parse();
         let gait = gait.map_err(|cause| error(gait_place, format!("gait: {cause}")))?;
-        let (line, _) = crate::place::line_and_column(text, gait_place);
+        let (line, _) = crate::file_error::line_and_column(text, gait_place);
         let track = format!("{}:{line}", path.display());
-        return Ok(vec![run(track.into(), gait, told)]);
+        return Ok(vec![run(track.into(), gait, reported)]);
     };
     if let Some((_, place)) = raw.first_number() {
         let problem = "numbers next to a table of results: the table has them all".to_owned();
@@ -366,9 +366,9 @@ fn told_runs(
         FileError::Read { .. } => error(results.span().start, cause.to_string()),
         other => other,
     })?;
-    let named = |(line, gait, told)| {
+    let named = |(line, gait, reported)| {
         let track = format!("{}:{line}", file.display());
-        run(track.into(), gait, told)
+        run(track.into(), gait, reported)
     };
     Ok(rows.into_iter().map(named).collect())
 }

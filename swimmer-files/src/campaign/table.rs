@@ -5,13 +5,16 @@ use std::path::Path;
 use csv::StringRecord;
 
 use super::raw::NUMBERS;
-use super::told::{ToldRun, told};
-use crate::place::read_text;
+use super::reported::{ReportedResults, reported};
+use crate::file_error::read_text;
 use crate::{FileError, GaitSpec};
 
 /// The runs of a table, each with its line and its gait. `gait` is what the `[[run]]` says: `circle` or `square` where the table
 /// has amplitudes, else a gait for all rows or for those without their own.
-pub(super) fn table(path: &Path, gait: &str) -> Result<Vec<(usize, GaitSpec, ToldRun)>, FileError> {
+pub(super) fn table(
+    path: &Path,
+    gait: &str,
+) -> Result<Vec<(usize, GaitSpec, ReportedResults)>, FileError> {
     let text = read_text(path)?;
     let error = |line: usize, column: usize, problem: String| {
         FileError::at(path, line, column + 1, problem)
@@ -57,7 +60,7 @@ pub(super) fn table(path: &Path, gait: &str) -> Result<Vec<(usize, GaitSpec, Tol
             (None, None, Some(radians)) => with_amplitude(gait, radians),
             (None, None, None) => gait.to_owned(),
             _ => {
-                let problem = "one of gait, amplitude_deg and amplitude_rad says what was swum";
+                let problem = "one of gait, amplitude_deg and amplitude_rad must name the gait";
                 return Err(error(line, 0, problem.to_owned()));
             }
         };
@@ -69,10 +72,10 @@ pub(super) fn table(path: &Path, gait: &str) -> Result<Vec<(usize, GaitSpec, Tol
         let spec: GaitSpec = of_row
             .parse()
             .map_err(|cause| error(line, 0, format!("gait: {cause}")))?;
-        let mut told = told(number)
+        let mut reported = reported(number)
             .map_err(|(key, problem)| error(line, place(&key).unwrap_or(0), problem))?;
-        told.table = Some(path.to_owned());
-        out.push((line, spec, told));
+        reported.table = Some(path.to_owned());
+        out.push((line, spec, reported));
     }
     if out.is_empty() {
         return Err(error(

@@ -108,10 +108,7 @@ pub(super) fn gait_file(text: &str, path: &Path) -> Result<GaitFile, FileError> 
     check_closure(&file, last)?;
     for (line, corner) in corner_places {
         if !file.u.iter().any(|u| u.to_bits() == corner.to_bits()) {
-            return Err(line.error(
-                "",
-                format!("the corner at u = {corner} is none of the samples' u"),
-            ));
+            return Err(line.error("", format!("no sample has the u of the corner, {corner}")));
         }
     }
     Ok(file)

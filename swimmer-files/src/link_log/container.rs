@@ -90,8 +90,8 @@ impl<W: Write + Seek> Container<W> {
         let received = frame.received();
         self.add(channel, frame, &frame.to_json(received.as_ref()))?;
         if let Some(message) = received.and_then(|received| received.message.ok()) {
-            if let Message::Telemetry(told) = &message {
-                self.add(telemetry, frame, &telemetry_json(told))?;
+            if let Message::Telemetry(received) = &message {
+                self.add(telemetry, frame, &telemetry_json(received))?;
             }
             if let Some(update) = self.scenes.after(&message, frame.host_time_ns) {
                 self.add(scene, frame, &update)?;

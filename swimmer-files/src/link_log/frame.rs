@@ -59,13 +59,14 @@ impl LinkFrame {
     }
 
     pub(super) fn from_json(direction: Direction, data: &[u8]) -> Result<Self, String> {
-        let told: StoredFrame =
+        let stored: StoredFrame =
             serde_json::from_slice(data).map_err(|error| format!("no frame: {error}"))?;
         Ok(Self {
             direction,
-            host_time_ns: told.host_time_ns,
-            robot_time_us: told.robot_time_us,
-            bytes: bytes_of(&told.raw_hex).ok_or("`raw_hex` is not pairs of hexadecimal digits")?,
+            host_time_ns: stored.host_time_ns,
+            robot_time_us: stored.robot_time_us,
+            bytes: bytes_of(&stored.raw_hex)
+                .ok_or("`raw_hex` is not pairs of hexadecimal digits")?,
         })
     }
 }

@@ -92,8 +92,8 @@ fn a_file_that_is_not_there_is_told_with_the_line_that_names_it() {
         let error = Campaign::load(&path).unwrap_err();
         assert_eq!(error.place().map(|place| place.0), Some(line), "{error}");
         let file = folder.path().join(file);
-        let told = format!("no file {}", file.display());
-        assert!(error.to_string().contains(&told), "{error}");
+        let reported = format!("no file {}", file.display());
+        assert!(error.to_string().contains(&reported), "{error}");
         std::fs::write(file, "").unwrap();
     }
     assert_eq!(Campaign::load(&path).unwrap().runs.len(), 2);
@@ -283,14 +283,14 @@ fn reflectors_on_the_side_links() {
 }
 
 /// A campaign of one run without a track.
-fn told(numbers: &str) -> String {
+fn reported(numbers: &str) -> String {
     format!("swimmer = \"robot\"\n[[run]]\ngait = \"circle:70deg\"\nperiod_s = 26.0\n{numbers}\n")
 }
 
 #[test]
 fn results_instead_of_a_track() {
     let read = |text: &str| Campaign::parse(text, Path::new("tank/campaign.toml"));
-    let campaign = read(&told(
+    let campaign = read(&reported(
         "x_mm = 12.5\nx_sd_mm = 0.5\ncycles = 6\ndelta_theta_deg = 30.0\ndelta_theta_se_deg = 0.4",
     ))
     .unwrap();
@@ -298,16 +298,16 @@ fn results_instead_of_a_track() {
         panic!("{campaign:?}");
     };
     assert_eq!(run.track, Path::new("tank/campaign.toml:3"));
-    let results = run.told.as_ref().unwrap();
+    let results = run.reported.as_ref().unwrap();
     assert_eq!((results.cycles, results.delta_y), (Some(6), None));
     let x = results.x.unwrap();
     assert!((x.mean - 0.0125).abs() < 1e-15 && (x.sd.unwrap() - 5e-4).abs() < 1e-15);
     let theta = results.delta_theta.unwrap();
     assert!((theta.mean - 30_f64.to_radians()).abs() < 1e-15 && theta.sd.is_none());
     for (numbers, place, why) in [
-        ("", "3:8", "tells x_mm"),
+        ("", "3:8", "needs x_mm"),
         ("x_mm = nan", "5:8", "finite"),
-        ("x_mm = 1.0\nx_sd_mm = 0.1", "6:11", "say by `cycles`"),
+        ("x_mm = 1.0\nx_sd_mm = 0.1", "6:11", "number of `cycles`"),
         (
             "x_mm = 1.0\nx_sd_mm = 0.1\ncycles = 1",
             "6:11",
@@ -323,7 +323,7 @@ fn results_instead_of_a_track() {
         ("x_mm = 1.0\nresults = \"a.csv\"", "5:8", "next to a table"),
         ("x_cm = 1.0", "5:1", "unknown field"),
     ] {
-        let text = told(numbers).replace("[[run]]", if numbers.contains("track") {
+        let text = reported(numbers).replace("[[run]]", if numbers.contains("track") {
             "[reflectors]\nfront = { point = \"F\", at = [0.03, 0.0] }\nback = { point = \"B\", at = [-0.03, 0.0] }\n[[run]]"
         } else {
             "[[run]]"
@@ -355,7 +355,7 @@ fn a_table_of_results() {
     let write = |table: &str| {
         std::fs::write(folder.path().join("figure.csv"), table).unwrap();
         let path = folder.path().join("campaign.toml");
-        let text = told("results = \"figure.csv\"").replace("circle:70deg", "circle");
+        let text = reported("results = \"figure.csv\"").replace("circle:70deg", "circle");
         std::fs::write(&path, text).unwrap();
         Campaign::load(&path)
     };
@@ -370,7 +370,10 @@ fn a_table_of_results() {
         .collect();
     assert!(gaits[0].contains("circle") && gaits.len() == 2, "{gaits:?}");
     assert!(campaign.runs[1].track.ends_with("figure.csv:5"));
-    assert_eq!(campaign.runs[1].told.as_ref().unwrap().x.unwrap().sd, None);
+    assert_eq!(
+        campaign.runs[1].reported.as_ref().unwrap().x.unwrap().sd,
+        None
+    );
     let files = Campaign::files(&folder.path().join("campaign.toml")).unwrap();
     assert!(files.iter().any(|file| file.ends_with("figure.csv")));
     for (table, place, why) in [

@@ -123,7 +123,7 @@ fn mistakes_have_a_place() {
             "# corner: 1.8",
             "# corner: 1.7",
             (line_of("# corner: 1.8"), 1),
-            "none of the samples",
+            "no sample has the u",
         ),
         (
             "\n0.0000000000000000e0,",

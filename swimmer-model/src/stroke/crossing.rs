@@ -68,7 +68,7 @@ pub fn crossing_share<T: Scalar, G: Gait<T> + ?Sized>(
 }
 
 /// Sample of a gait.
-struct Look<T> {
+struct GaitSample<T> {
     phi: Vector2<T>,
     /// Overlap of the side links.
     overlap: T,
@@ -86,14 +86,14 @@ fn stretches<T: Scalar, G: Gait<T> + ?Sized>(
     let touch = links.middle * T::from_f64(TOUCH);
     let look = |u: T| {
         let phi = gait.at(u).phi;
-        Look {
+        GaitSample {
             overlap: links.overlap(&phi) - touch,
             flat: flatness(phi.x).max(flatness(phi.y)),
             phi,
         }
     };
     // A link that only passes through |φ| = π is not folded for a finite time: it must still be folded a little later.
-    let lies = |at: &Look<T>, from: T, towards: T| {
+    let lies = |at: &GaitSample<T>, from: T, towards: T| {
         at.flat >= T::zero() && look(from + (towards - from) * T::from_f64(0.01)).flat >= T::zero()
     };
     let mut folds = false;
@@ -118,7 +118,7 @@ fn stretches<T: Scalar, G: Gait<T> + ?Sized>(
             };
             let there = look(next);
             let folded = lies(&here, u, next) || lies(&there, next, u);
-            let level = |at: &Look<T>| {
+            let level = |at: &GaitSample<T>| {
                 if folded {
                     at.overlap.max(links.middle * at.flat)
                 } else {
@@ -140,7 +140,7 @@ fn stretches<T: Scalar, G: Gait<T> + ?Sized>(
     folds
 }
 
-impl<T: Scalar> Look<T> {
+impl<T: Scalar> GaitSample<T> {
     /// Returns `true` if a side link is folded flat at this sample, at the previous one, or on the short way between them.
     fn folds_after(&self, before: &Self) -> bool {
         // Value of the flatness if no side link points backwards.

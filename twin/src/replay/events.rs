@@ -110,14 +110,14 @@ impl Events {
         let read = until_restart(read, greeting, &hello);
         let restarted = read.len() < whole;
         // Telemetry before the greeting belongs to another session.
-        let told: Vec<Telemetry> = telemetry(&read, greeting).copied().collect();
-        let first = told.first().ok_or(ReplayError::NoTelemetry)?;
+        let messages: Vec<Telemetry> = telemetry(&read, greeting).copied().collect();
+        let first = messages.first().ok_or(ReplayError::NoTelemetry)?;
         let (state, setpoint) = found(&read, greeting).unwrap_or((first.state, first.setpoint));
         if !matches!(state, StateName::Stopped | StateName::EStopped) || setpoint != [0; 2] {
             return Err(ReplayError::NotAtRest(state));
         }
         let clock = Ticks::new(first.robot_us, read.iter().map(|read| read.at_us));
-        let telemetry: BTreeMap<u64, Telemetry> = told
+        let telemetry: BTreeMap<u64, Telemetry> = messages
             .iter()
             .map(|telemetry| (clock.at(telemetry.robot_us), *telemetry))
             .collect();

@@ -245,7 +245,7 @@ impl Lab {
             campaign,
             CampaignData {
                 runs,
-                told,
+                reported_gaits: told,
                 ..CampaignData::default()
             },
         )

@@ -349,7 +349,7 @@ pub(crate) fn campaign(
         .iter()
         .zip(&runs)
         .map(|(amplitude, run)| CampaignRun {
-            told: None,
+            reported: None,
             track: run.file.clone(),
             gait: GaitSpec::Circle {
                 amplitude: amplitude.to_radians(),

@@ -114,7 +114,7 @@ impl Laboratory {
         let listed = self.amplitudes.iter().zip(&runs).map(|(degrees, run)| {
             let amplitude = degrees.to_radians();
             CampaignRun {
-                told: None,
+                reported: None,
                 track: run.file.clone(),
                 gait: GaitSpec::Circle {
                     amplitude,

@@ -88,7 +88,7 @@ impl Order {
             from,
             to,
         } = self.way;
-        let progress = Progress::of_a_whole("following gaits");
+        let progress = Progress::with_share("following gaits");
         let asked = ContinuationProblem {
             swimmer: self.swimmer,
             objective: self.objective,

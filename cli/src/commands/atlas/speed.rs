@@ -32,7 +32,7 @@ impl Atlas {
         let begun = Instant::now();
         let folder = self.output.as_deref().map(NewFolder::start).transpose()?;
         let starts = usize::try_from(self.starts).unwrap_or(usize::MAX);
-        let progress = Progress::of_a_whole("looking for optima");
+        let progress = Progress::with_share("looking for optima");
         let problem = SpeedProblem {
             bounds: self.bounds.of(file),
             starts,

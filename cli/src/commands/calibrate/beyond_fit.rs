@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use calibrate::{Advice, CampaignFit, FurtherFit, NuisanceParameter, advise, fit_further};
+use calibrate::{Advice, CampaignFit, NuisanceFit, NuisanceParameter, advise, fit_nuisance};
 use clap::builder::{PossibleValuesParser, TypedValueParser as _};
 use serde::Serialize;
 use swimmer_files::Campaign;
@@ -64,7 +64,7 @@ impl BeyondFit {
         let mut output = BeyondFitOutput::default();
         if !self.fit_also.is_empty() {
             stages.next("fitting more parameters", FITTING);
-            output.further = Some(fit_further(found, &self.fit_also)?);
+            output.further = Some(fit_nuisance(found, &self.fit_also)?);
         }
         if self.advise {
             stages.next("weighing what to measure next", ADVISING);
@@ -78,7 +78,7 @@ impl BeyondFit {
 #[derive(Debug, Clone, Default, Serialize)]
 pub(crate) struct BeyondFitOutput {
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) further: Option<FurtherFit>,
+    pub(super) further: Option<NuisanceFit>,
     #[serde(skip_serializing_if = "Option::is_none")]
     advice: Option<Advice>,
 }
@@ -116,7 +116,7 @@ pub(super) fn readable(unit: &str, value: f64) -> String {
     }
 }
 
-fn of_fit(fit: &FurtherFit) -> ResultTable {
+fn of_fit(fit: &NuisanceFit) -> ResultTable {
     let mut table = Table::new(["by likelihood", "before", "fitted", "from", "to"]);
     for p in &fit.parameters {
         let [from, to] = p.interval.map(|end| readable(p.unit, end));

@@ -302,7 +302,7 @@ impl RunOutput {
                 turn_se_rad: cycles.rotation.se,
                 turn_lag1: cycles.rotation.lag1,
             },
-            front_rule: (!run.is_told()).then(|| run.poses.front.word()),
+            front_rule: (!run.is_reported()).then(|| run.poses.front.word()),
             phase: cycles.phase.word(),
             left_out: cycles
                 .left_out
@@ -323,7 +323,7 @@ impl RunOutput {
                 smoothed: run.poses.with(Origin::Smoothed).count(),
                 filled: run.poses.samples.iter().filter(|s| s.is_filled()).count(),
             },
-            front_words: if run.is_told() {
+            front_words: if run.is_reported() {
                 String::new()
             } else {
                 run.poses.front.to_string()

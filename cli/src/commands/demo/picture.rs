@@ -265,17 +265,14 @@ fn files(with_lab: bool) -> Vec<(String, String)> {
             CAMPAIGN,
             "the circles; swimmer calibrate campaign.toml fits them again",
         ),
-        (
-            "circle-….csv",
-            "what the cameras saw of each circle (Motive 1.23)",
-        ),
+        ("circle-….csv", "track of each circle (Motive 1.23)"),
         (
             START,
             "the swimmer as the fit was given it: lengths, servos, no drag",
         ),
         (FITTED, "the swimmer with the fitted drag"),
         (BEST, "the optimised gait"),
-        (BEST_TRACK, "what the cameras saw of it"),
+        (BEST_TRACK, "its track"),
         (
             "fastest.gait, fastest.csv",
             "the gait made for speed, at the servos' full rate",

@@ -40,8 +40,8 @@ impl Token {
     }
 
     /// Compared in the same time wherever they differ.
-    fn is(&self, told: &str) -> bool {
-        self.0.as_bytes().ct_eq(told.as_bytes()).into()
+    fn is(&self, presented: &str) -> bool {
+        self.0.as_bytes().ct_eq(presented.as_bytes()).into()
     }
 }
 

@@ -12,7 +12,7 @@ use super::output::{add_quarter, say_if_beyond};
 use super::robust::{Robustly, refused, robust_gait};
 use super::timing::{ServoTiming, Timed};
 use super::{Objective, SearchResult, Task};
-use crate::bounds::WholeBounds;
+use crate::bounds::CycleBounds;
 use crate::document::Document;
 use crate::failure::{Failure, Outcome};
 use crate::output::verbose;
@@ -35,7 +35,7 @@ pub(crate) struct Efficiency {
     #[arg(long, value_name = "METHOD", default_value = "auto")]
     method: How,
     #[command(flatten)]
-    bounds: WholeBounds,
+    bounds: CycleBounds,
     #[command(flatten)]
     robustly: Robustly,
     /// Order of the Fourier series of a robust gait, 6 unless given

@@ -95,7 +95,7 @@ impl Task<'_> {
 
     /// Runs the search, measures its duration and shows its progress.
     fn watched<T>(&self, what: &str, search: impl FnOnce(&(dyn Fn(f64) + Sync)) -> T) -> T {
-        let progress = Progress::of_a_whole(what);
+        let progress = Progress::with_share(what);
         self.measured(|| search(&|share| progress.at_share(share)))
     }
 }

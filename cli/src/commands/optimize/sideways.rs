@@ -4,7 +4,7 @@ use gait_optimizer::{SidewaysError, SidewaysProblem, sideways};
 
 use super::output::say_if_beyond;
 use super::{Objective, SearchResult, Task};
-use crate::bounds::WholeBounds;
+use crate::bounds::CycleBounds;
 use crate::document::Document;
 use crate::failure::{Failure, Outcome};
 use crate::playable::searched;
@@ -19,7 +19,7 @@ use crate::threads;
 #[derive(Debug, clap::Args)]
 pub(crate) struct Sideways {
     #[command(flatten)]
-    bounds: WholeBounds,
+    bounds: CycleBounds,
 }
 
 impl Objective for Sideways {

@@ -11,7 +11,7 @@ use super::pace::{SEARCHING, add_as_played, at_pace};
 use super::robust::{Robustly, add_robustness, as_written, refused};
 use super::{Objective, SearchResult, Task};
 use crate::arguments::{rate, seconds};
-use crate::bounds::WholeBounds;
+use crate::bounds::CycleBounds;
 use crate::document::Document;
 use crate::failure::{Failure, Outcome};
 use crate::new_file::may_be_written;
@@ -41,7 +41,7 @@ pub(crate) struct Speed {
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     period: Option<f64>,
     #[command(flatten)]
-    bounds: WholeBounds,
+    bounds: CycleBounds,
     #[command(flatten)]
     robustly: Robustly,
     /// Also draw displacement per cycle against speed, of the farthest gaits in shorter and longer periods: a figure, or their

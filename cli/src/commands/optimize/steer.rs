@@ -6,7 +6,7 @@ use swimmer_model::Pose;
 
 use super::{Objective, SearchResult, Task};
 use crate::arguments::{angle, rate};
-use crate::bounds::WholeBounds;
+use crate::bounds::CycleBounds;
 use crate::document::Document;
 use crate::failure::{Failure, Outcome};
 use crate::own_robot::servo_rates;
@@ -24,7 +24,7 @@ pub(crate) struct Steer {
     #[arg(long, value_name = "ANGLE_PER_S", value_parser = rate, num_args = 1..=2, required_unless_present = "playable")]
     max_rate: Vec<f64>,
     #[command(flatten)]
-    bounds: WholeBounds,
+    bounds: CycleBounds,
     /// The shape at which the gaits shall join: φ₁ and φ₂
     #[arg(long, value_name = "ANGLE,ANGLE", value_parser = shape, allow_hyphen_values = true)]
     pub(crate) shape: Option<[f64; 2]>,
@@ -42,7 +42,7 @@ impl Steer {
     pub(crate) fn straight() -> Self {
         Self {
             max_rate: Vec::new(),
-            bounds: WholeBounds::for_playing(),
+            bounds: CycleBounds::for_playing(),
             shape: Some([0.0; 2]),
         }
     }
@@ -61,7 +61,7 @@ impl Steer {
     /// # Errors
     /// Those of the search.
     pub(crate) fn find(&self, file: &SwimmerFile) -> Outcome<Steering> {
-        let progress = Progress::of_a_whole("looking for gaits that join");
+        let progress = Progress::with_share("looking for gaits that join");
         let problem = SteerProblem {
             of: SpeedProblem {
                 bounds: self.bounds.of(file),

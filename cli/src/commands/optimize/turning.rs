@@ -4,7 +4,7 @@ use gait_optimizer::{TurningError, TurningProblem, turning};
 
 use super::output::{add_arcs, say_if_beyond};
 use super::{Objective, SearchResult, Task};
-use crate::bounds::WholeBounds;
+use crate::bounds::CycleBounds;
 use crate::document::Document;
 use crate::failure::{Failure, Outcome};
 use crate::playable::searched;
@@ -17,7 +17,7 @@ use crate::quantity;
 #[derive(Debug, clap::Args)]
 pub(crate) struct Turning {
     #[command(flatten)]
-    bounds: WholeBounds,
+    bounds: CycleBounds,
 }
 
 impl Objective for Turning {

@@ -14,7 +14,7 @@ use swimmer_files::SwimmerFile;
 use super::find::{self, GreetingResult};
 use super::key::KeyFile;
 use super::port::{AnyPort, BAUD, Fresh, Means, NotOpen, Opened, Pace, fresh, open};
-use super::port_owner::{Ask, HeldBy, PortHolder, Relayed};
+use super::port_owner::{HeldBy, PortHolder, PortRequest, Relayed};
 use super::tank_cameras::TankCameras;
 use crate::arguments::load_swimmer;
 use crate::failure::{Failure, Outcome};
@@ -228,17 +228,17 @@ impl Access {
 
     fn recorder(&self) -> Outcome<Option<Recorder>> {
         let recorder = self.log.as_deref().map(Recorder::create).transpose()?;
-        Ok(recorder.map(Recorder::told))
+        Ok(recorder.map(Recorder::announced))
     }
 
     /// Sends a request to the process that holds the robot's port, or takes the port.
     ///
     /// # Errors
-    /// As [`Self::ask_holder`] and [`Self::connect`].
-    pub(super) fn contact(&self, ask: Ask, command: &str, pace: Pace) -> Outcome<Contact> {
+    /// As [`Self::request_holder`] and [`Self::connect`].
+    pub(super) fn contact(&self, ask: PortRequest, command: &str, pace: Pace) -> Outcome<Contact> {
         let begun = Instant::now();
         loop {
-            if let Some(relayed) = self.ask_holder(ask)? {
+            if let Some(relayed) = self.request_holder(ask)? {
                 return Ok(Contact::Relayed(relayed));
             }
             match self.connect(command, pace) {
@@ -265,7 +265,7 @@ impl Access {
     ///
     /// # Errors
     /// The reply of that process.
-    pub(super) fn ask_holder(&self, ask: Ask) -> Outcome<Option<Relayed>> {
+    pub(super) fn request_holder(&self, ask: PortRequest) -> Outcome<Option<Relayed>> {
         match self.held_by() {
             Some(held_by) => held_by.ask(ask),
             None => Ok(None),
@@ -519,10 +519,10 @@ impl RobotConnection {
 fn doubt(has_key: bool, signs: bool) -> Option<&'static str> {
     match (has_key, signs) {
         (false, _) => Some(
-            "note: --key names a key, but the robot has none: whoever reaches its port can drive it. `swimmer robot key make FILE` gives it one",
+            "note: --key names a key, but the robot has none: anyone who reaches its port can drive it. `swimmer robot key make FILE` gives it one",
         ),
         (true, false) => Some(
-            "note: the robot says that it has a key, but does not sign its answers: what it tells is not shown to come from it. Its firmware may be older: `swimmer robot flash` brings today's",
+            "note: the robot reports a key but does not sign its replies, so they are not authenticated. Its firmware may be older: `swimmer robot flash` installs the current one",
         ),
         (true, true) => None,
     }

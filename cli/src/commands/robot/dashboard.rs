@@ -79,9 +79,9 @@ impl Dashboard {
         }
         // The robot's count wraps; after that many frames the share is that of the last round.
         let sent = (sent % 65_536) as f64;
-        let told = self.link.telemetry.saturating_sub(*heard_before) + 1;
+        let frames = self.link.telemetry.saturating_sub(*heard_before) + 1;
         let percent = |arrived: f64, of: f64| (100.0 * (1.0 - arrived / of)).clamp(0.0, 100.0);
-        Some([percent(heard, sent), percent(told as f64, due)])
+        Some([percent(heard, sent), percent(frames as f64, due)])
     }
 
     /// Takes new telemetry.

@@ -56,7 +56,7 @@ impl fmt::Display for Flashed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "Copied {} ({}, for {}) onto {}: the board restarts with it. Settings and the stored gait stay; `swimmer robot info` tells the new version.",
+            "Copied {} ({}, for {}) onto {}: the board restarts with it. Settings and the stored gait stay; `swimmer robot info` prints the new version.",
             self.file,
             self.version.as_deref().unwrap_or("of no version"),
             self.board.unwrap_or("a board that it does not name"),

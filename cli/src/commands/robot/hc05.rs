@@ -2,7 +2,9 @@
 
 use std::fmt;
 
-use host_link::hc05::{self, AT_BAUD, Hc05Error, Module, Setting, Uart, Wanted, WantedError};
+use host_link::hc05::{
+    self, AT_BAUD, Hc05Error, Module, ModuleSettings, ModuleSettingsError, Setting, Uart,
+};
 use host_link::port::SerialPort;
 use serde::Serialize;
 
@@ -36,7 +38,7 @@ pub(super) struct Hc05 {
 
 /// Does it.
 pub(super) fn run(access: &Access, arguments: &Hc05, output: Output) -> Outcome {
-    let wanted = Wanted::new(access.baud(), arguments.name.clone(), arguments.pin.clone())?;
+    let wanted = ModuleSettings::new(access.baud(), arguments.name.clone(), arguments.pin.clone())?;
     let path = match access.bare_port() {
         Some(path) if is_a_path(path) => path,
         _ => {
@@ -121,7 +123,7 @@ impl Hc05Output {
 
 impl fmt::Display for Hc05Output {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let told =
+        let reported =
             |value: &Option<String>| value.clone().unwrap_or_else(|| "not reported".to_owned());
         let speed = |settings: &Settings| match (settings.baud, settings.stop_bits, settings.parity)
         {
@@ -136,12 +138,22 @@ impl fmt::Display for Hc05Output {
             None => "not reported".to_owned(),
         };
         let mut rows = Rows::default();
-        rows.row("firmware", told(&self.version));
+        rows.row("firmware", reported(&self.version));
         let (before, after) = (&self.before, &self.after);
         for (setting, label, was, is) in [
             (Setting::Role, "role", role(before), role(after)),
-            (Setting::Name, "name", told(&before.name), told(&after.name)),
-            (Setting::Pin, "PIN", told(&before.pin), told(&after.pin)),
+            (
+                Setting::Name,
+                "name",
+                reported(&before.name),
+                reported(&after.name),
+            ),
+            (
+                Setting::Pin,
+                "PIN",
+                reported(&before.pin),
+                reported(&after.pin),
+            ),
             (Setting::Uart, "speed", speed(before), speed(after)),
         ] {
             let text = if !self.differed.contains(&setting.word()) {
@@ -164,8 +176,8 @@ impl fmt::Display for Hc05Output {
     }
 }
 
-impl From<WantedError> for Failure {
-    fn from(error: WantedError) -> Self {
+impl From<ModuleSettingsError> for Failure {
+    fn from(error: ModuleSettingsError) -> Self {
         Self::bad_input(&error)
     }
 }

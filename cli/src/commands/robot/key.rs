@@ -81,7 +81,7 @@ impl fmt::Display for Changed {
             ),
             None => write!(
                 f,
-                "The robot has no key: whoever reaches its port can drive it."
+                "The robot has no key: anyone who reaches its port can drive it."
             ),
         }
     }

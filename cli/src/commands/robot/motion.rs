@@ -15,7 +15,7 @@ use super::outputs::{Done, PAUSED_DETACHED, cause, state};
 use super::playing::{self, Playing};
 use super::playlist;
 use super::port::Pace;
-use super::port_owner::Ask;
+use super::port_owner::PortRequest;
 use super::rest::{nothing_under_way, ready, stopped_on_failure, wait_for_rest};
 use super::upload::BeforePlay;
 use super::{Arm, Pause, Play};
@@ -100,7 +100,7 @@ pub(super) fn play(access: &Access, play: &Play, output: Output) -> Outcome {
     play.room.check()?;
     if play.room.tank.is_some() && play.playlist.is_none() {
         return Err(Failure::BadInput(
-            "--tank looks ahead along a playlist: name one by --playlist; `swimmer robot upload --tank` foretells a gait"
+            "--tank looks ahead along a playlist: name one by --playlist; `swimmer robot upload --tank` forecasts a gait"
                 .to_owned(),
         ));
     }
@@ -214,9 +214,9 @@ fn attach(line: &mut RobotConnection, interrupt: &Interrupt, output: Output) -> 
 pub(super) fn pause(access: &Access, pause: &Pause, output: Output) -> Outcome {
     let interrupt = Interrupt::install_with_a_robot()?;
     let ask = if pause.detach {
-        Ask::PauseDetached
+        PortRequest::PauseDetached
     } else {
-        Ask::Pause
+        PortRequest::Pause
     };
     let mut line = match access.contact(ask, "swimmer robot pause", Pace::RealTime)? {
         Contact::Direct(line) => line,
@@ -243,13 +243,14 @@ pub(super) fn pause(access: &Access, pause: &Pause, output: Output) -> Outcome {
 /// `swimmer robot resume`: continues the play and waits for the end of the last cycle.
 pub(super) fn resume(access: &Access, output: Output) -> Outcome {
     let interrupt = Interrupt::install_with_a_robot()?;
-    let mut line = match access.contact(Ask::Resume, "swimmer robot resume", Pace::RealTime)? {
-        Contact::Direct(line) => line,
-        Contact::Relayed(relayed) => {
-            output.print(&relayed.into_output());
-            return Ok(());
-        }
-    };
+    let mut line =
+        match access.contact(PortRequest::Resume, "swimmer robot resume", Pace::RealTime)? {
+            Contact::Direct(line) => line,
+            Contact::Relayed(relayed) => {
+                output.print(&relayed.into_output());
+                return Ok(());
+            }
+        };
     line.stops_on(&interrupt);
     line.robot.resume()?;
     wait(&mut line, &interrupt, output)?;
@@ -262,7 +263,8 @@ fn hold(line: &mut RobotConnection, interrupt: &Interrupt) -> Outcome {
         let news = line.beat();
         let news = stopped_on_failure(&mut line.robot, news)?;
         // It need not be at rest yet: what it says now may be the last that comes through.
-        if let Some(telemetry) = news.filter(|told| at_rest(told.state, told.cause)) {
+        if let Some(telemetry) = news.filter(|telemetry| at_rest(telemetry.state, telemetry.cause))
+        {
             return Err(Failure::Tried(format!(
                 "the robot stopped: {}",
                 host_link::session::cause_in_words(telemetry.cause)

@@ -215,10 +215,10 @@ impl fmt::Display for RobotState {
         };
         rows.row("state", state);
         // Presence has a row of its own, and a robot at rest need not hear from anybody.
-        let told = |flag: &&&str| {
+        let is_shown = |flag: &&&str| {
             **flag != "present" && (**flag != "link silent" || self.state != "stopped")
         };
-        let flags: Vec<&str> = self.flags.iter().filter(told).copied().collect();
+        let flags: Vec<&str> = self.flags.iter().filter(is_shown).copied().collect();
         if !flags.is_empty() {
             rows.row("flags", flags.join(", "));
         }

@@ -86,7 +86,7 @@ impl PlayProgress {
     pub(super) fn new(play: Playing) -> Self {
         Self {
             play,
-            progress: Progress::of_a_whole(""),
+            progress: Progress::with_share(""),
         }
     }
 

@@ -265,12 +265,12 @@ fn through(
     let begun = line.robot.play_checked(cycles, period, false, checked);
     stopped_on_failure(&mut line.robot, begun)?;
     let mut sequence = Sequence::playing_first(legs, settings_crc32);
-    let progress = Progress::of_a_whole("");
+    let progress = Progress::with_share("");
     loop {
         let (robot, holder) = line.split();
         let gone_on = sequence.go_on(robot, |now| {
-            if let Some(told) = now.telemetry {
-                let next = if told.flags.contains(Flags::SWAP_PENDING) {
+            if let Some(telemetry) = now.telemetry {
+                let next = if telemetry.flags.contains(Flags::SWAP_PENDING) {
                     ", the next waits"
                 } else {
                     ""
@@ -278,8 +278,8 @@ fn through(
                 progress.doing(format!(
                     "table {} of {count}: cycle {} of {}{next}",
                     now.leg + 1,
-                    told.cycle + 1,
-                    told.cycles
+                    telemetry.cycle + 1,
+                    telemetry.cycles
                 ));
                 progress.at_share((now.leg as f64) / count as f64);
             }

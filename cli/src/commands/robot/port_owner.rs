@@ -36,6 +36,6 @@ pub(super) use self::held_by::HeldBy;
 #[cfg(unix)]
 pub(super) use self::holder::PortHolder;
 pub(super) use open_by::program_with;
-pub(super) use relay::{Ask, Introduction, News, Relayed, Unanswered};
+pub(super) use relay::{Introduction, LinkReport, PortRequest, Relayed, Unanswered};
 #[cfg(not(unix))]
 pub(super) use unsupported::{HeldBy, PortHolder};

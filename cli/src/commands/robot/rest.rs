@@ -69,7 +69,7 @@ pub(super) fn stopped_on_failure<T>(
 /// Waits until the pulses are off.
 pub(super) fn wait_for_rest(robot: &mut Robot<AnyPort>) -> Result<StateName, LinkError> {
     robot.listen(TO_REST, |telemetry| {
-        if telemetry.is_some_and(|told| is_off(told.state)) {
+        if telemetry.is_some_and(|telemetry| is_off(telemetry.state)) {
             ControlFlow::Break(())
         } else {
             ControlFlow::Continue(())

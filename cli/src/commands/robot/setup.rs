@@ -21,7 +21,7 @@ use host_link::LinkError;
 use link_protocol::{Joint, ServoSettings, StateName};
 use swimmer_files::SwimmerFile;
 
-use self::measured::{Measured, end_stops, told};
+use self::measured::{Measured, end_stops, measured_text};
 use self::operator::{Operator, degrees, takes_it};
 use self::output::Done;
 use self::readings::Readings;
@@ -235,7 +235,7 @@ impl Bench<'_> {
             }
         };
         let settings = found.settings(&before);
-        self.operator.tell(&told(name, &found, &settings));
+        self.operator.tell(&measured_text(name, &found, &settings));
         let measured = quantity::angle(found.dead_band);
         let dead_band = self.operator.ask(
             self.line,
@@ -270,13 +270,13 @@ impl Bench<'_> {
     /// Stops the robot and restores its settings, as far as the link allows.
     fn leave(&mut self) {
         let left = self.put_back();
-        let told = match left {
+        let note = match left {
             Ok(()) => "The robot is stopped and as it was.",
             Err(_) => {
                 "The robot could not be put back as it was: look at its trims (`swimmer robot trim`)."
             }
         };
-        aside(told);
+        aside(note);
     }
 
     fn put_back(&mut self) -> Result<(), LinkError> {

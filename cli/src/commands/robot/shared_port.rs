@@ -17,7 +17,7 @@ use link_protocol::{Decoder, Message, StateName, Telemetry};
 use super::access::{A_MOMENT, open_when_free};
 use super::outputs::{Done, state};
 use super::port::{AnyPort, BAUD, Means, Pace, open, session_seed};
-use super::port_owner::{Ask, PortHolder, Relayed};
+use super::port_owner::{PortHolder, PortRequest, Relayed};
 use crate::failure::Outcome;
 use crate::virtual_robot::EmulatedBoard;
 
@@ -234,16 +234,16 @@ impl SharedPort {
 
     /// Serves requests of other `swimmer` processes: a stop, or the state.
     fn serve_others(&mut self) {
-        for (ask, asker) in self.holder.take_asked() {
+        for (ask, requester) in self.holder.take_requests() {
             if let Some(halt) = ask.halt() {
                 self.stop(halt);
             }
             let answer = match ask {
-                Ask::Stop | Ask::EStop => Relayed::of(&Done {
+                PortRequest::Stop | PortRequest::EStop => Relayed::of(&Done {
                     state: "stopping",
                     sentence: "Stopping: the lab page's server passed it on.".to_owned(),
                 }),
-                Ask::Status if self.state().is_some() => Relayed::of(&Done {
+                PortRequest::Status if self.state().is_some() => Relayed::of(&Done {
                     state: self.state().map_or("stopping", state),
                     sentence: "By the robot's last report.".to_owned(),
                 }),
@@ -252,7 +252,7 @@ impl SharedPort {
                     self.name
                 )),
             };
-            asker.answer(&answer);
+            requester.answer(&answer);
         }
     }
 }

@@ -12,7 +12,7 @@ use link_protocol::StateName;
 use super::access::{Access, LOOK_AGAIN, PortState, report_silence};
 use super::outputs::{Done, E_STOPPED, STOPPED, state};
 use super::port::{AnyPort, Pace, session_seed};
-use super::port_owner::{Ask, HeldBy, Relayed, Unanswered};
+use super::port_owner::{HeldBy, PortRequest, Relayed, Unanswered};
 use super::rest::{TO_REST, wait_for_rest};
 use super::{Estop, Stop};
 use crate::failure::{Failure, Outcome};
@@ -22,7 +22,7 @@ use crate::output::{Output, aside};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum TakeOver {
     Yes,
-    Ask,
+    PortRequest,
     No,
 }
 
@@ -31,9 +31,9 @@ pub(super) fn stop(access: &Access, arguments: &Stop, output: Output) -> Outcome
     let take_over = if arguments.take_over {
         TakeOver::Yes
     } else {
-        TakeOver::Ask
+        TakeOver::PortRequest
     };
-    run(access, Ask::Stop, take_over, output)
+    run(access, PortRequest::Stop, take_over, output)
 }
 
 /// `swimmer robot estop`.
@@ -46,7 +46,7 @@ pub(super) fn estop(access: &Access, arguments: &Estop, output: Output) -> Outco
     } else {
         TakeOver::Yes
     };
-    run(access, Ask::EStop, take_over, output)
+    run(access, PortRequest::EStop, take_over, output)
 }
 
 /// Ends the latch; any motion afterwards needs a new request.
@@ -74,13 +74,13 @@ fn clear(access: &Access, yes: bool, output: Output) -> Outcome {
     line.close()
 }
 
-fn run(access: &Access, ask: Ask, take_over: TakeOver, output: Output) -> Outcome {
+fn run(access: &Access, ask: PortRequest, take_over: TakeOver, output: Output) -> Outcome {
     let access = &access.for_a_stop();
-    let estop = ask == Ask::EStop;
+    let estop = ask == PortRequest::EStop;
     let begun = Instant::now();
     let robot = loop {
         if let Some(held_by) = access.held_by() {
-            match held_by.try_ask(ask) {
+            match held_by.try_request(ask) {
                 Ok(Some(relayed)) => {
                     if let Some(at_rest) = rest_by_holder(access, relayed) {
                         output.print(&at_rest.into_output());
@@ -151,7 +151,7 @@ fn allow(take_over: TakeOver, held_by: &HeldBy, estop: bool) -> Outcome {
     let yes = match take_over {
         TakeOver::Yes => true,
         TakeOver::No => false,
-        TakeOver::Ask => confirmed("Stop the robot past it? [y/N]"),
+        TakeOver::PortRequest => confirmed("Stop the robot past it? [y/N]"),
     };
     if yes {
         return Ok(());
@@ -178,8 +178,8 @@ fn past(
     held_by: &HeldBy,
     estop: bool,
 ) -> Outcome<Option<Result<Robot<AnyPort>, LinkError>>> {
-    if let Some(beside) = held_by.beside() {
-        match stop_at_once(access, Box::new(beside), estop) {
+    if let Some(occupied) = held_by.occupied() {
+        match stop_at_once(access, Box::new(occupied), estop) {
             Ok(robot) => {
                 let process = held_by.process();
                 aside(&format!(
@@ -221,7 +221,7 @@ fn rest_by_holder(access: &Access, stopped: Relayed) -> Option<Relayed> {
     let mut last = stopped;
     while !matches!(last.state(), "stopped" | "e-stopped") && begun.elapsed() < TO_REST {
         sleep(LOOK_AGAIN);
-        match access.ask_holder(Ask::Status) {
+        match access.request_holder(PortRequest::Status) {
             Ok(Some(status)) if status.state() == "stopped" => last = Relayed::of(&Done::at_rest()),
             Ok(Some(_)) => {}
             Ok(None) => return None,

@@ -268,7 +268,7 @@ impl Tracking {
 
     fn not_shown(&self) -> String {
         let (counts, source) = (self.filter.counts(), &self.source);
-        let advice = if self.filter.is_found() {
+        let advice = if self.filter.is_tracked() {
             "two points are the reflectors, but none of them has its name, so that the front is unknown. Name them with --front and \
              --back, or give the robot's heading with --facing"
         } else {

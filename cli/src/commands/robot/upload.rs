@@ -75,7 +75,7 @@ pub(super) fn run(access: &Access, arguments: &Upload, output: Output) -> Outcom
     if arguments.dry_run && !access.names_a_port() {
         let Some(file) = &file else {
             return Err(Failure::BadInput(
-                "say which swimmer shall play the gait: --swimmer, or --port of a robot that tells"
+                "name the swimmer that shall play the gait: --swimmer, or --port of a robot"
                     .to_owned(),
             ));
         };
@@ -89,7 +89,7 @@ pub(super) fn run(access: &Access, arguments: &Upload, output: Output) -> Outcom
     }
     if let Some(file) = file.filter(|file| !is_configured_as(&configuration, &file.swimmer)) {
         aside(&format!(
-            "note: the robot is configured as another swimmer than `{}`, which --swimmer names and for which this foretells; send it with `swimmer robot configure`, or leave --swimmer out",
+            "note: the robot is configured as another swimmer than `{}`, which --swimmer names and this forecast is for; send it with `swimmer robot configure`, or leave --swimmer out",
             file.name
         ));
     }
@@ -107,7 +107,7 @@ pub(super) fn run(access: &Access, arguments: &Upload, output: Output) -> Outcom
         }
         Err(Failure::Tried(reason)) => {
             // The robot has the last word, and will say it.
-            aside(&format!("Nothing can be foretold: {reason}."));
+            aside(&format!("No forecast is possible: {reason}."));
             None
         }
         Err(failure) => return Err(failure),

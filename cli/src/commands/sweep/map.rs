@@ -34,8 +34,8 @@ pub(crate) struct Map {
     #[arg(long, value_name = "AXIS=VALUE", value_parser = at)]
     at: Vec<(Field, f64)>,
     /// Quantity of the map
-    #[arg(long, value_enum, default_value_t = Drawn::Displacement)]
-    quantity: Drawn,
+    #[arg(long, value_enum, default_value_t = MapQuantity::Displacement)]
+    quantity: MapQuantity,
     /// Write the picture: .svg, or .png in pixels
     #[arg(short, long, value_name = "FILE.svg|.png")]
     output: Option<PathBuf>,
@@ -46,7 +46,7 @@ pub(crate) struct Map {
 
 /// Quantity of the map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum Drawn {
+pub(super) enum MapQuantity {
     /// X/L of the best gait
     Displacement,
     /// Lighthill's efficiency
@@ -133,8 +133,8 @@ impl Map {
                 ))
             })
         };
-        let told = [self.across, self.up].map(|field| field.map(place).transpose());
-        let [across, up] = told;
+        let given = [self.across, self.up].map(|field| field.map(place).transpose());
+        let [across, up] = given;
         let (across, up) = (across?, up?);
         let other = |taken: usize| usize::from(taken == 0);
         slice.axes = match (across, up) {
@@ -211,7 +211,7 @@ impl fmt::Display for MapOutput {
                 self.pareto.to_string(),
             )
             .row(
-                "odd beside their neighbours",
+                "unlike their neighbours",
                 format!(
                     "{} beaten by a tighter bound, {} lost, {} jumps",
                     count(DoubtKind::Beaten),

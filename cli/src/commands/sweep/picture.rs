@@ -3,7 +3,7 @@
 use plotters::prelude::{ColorMap as _, RGBColor, ViridisRGB};
 use sweep::{Map, MapAxis};
 
-use super::map::Drawn;
+use super::map::MapQuantity;
 use crate::failure::{Failure, Outcome};
 use crate::report::chart::{Chart, INK, MEASURED, Series};
 
@@ -23,10 +23,10 @@ const KINDS: [RGBColor; 9] = [
 ];
 
 /// The picture as SVG.
-pub(super) fn drawn(map: &Map, what: Drawn) -> Outcome<String> {
+pub(super) fn drawn(map: &Map, what: MapQuantity) -> Outcome<String> {
     match what {
-        Drawn::Pareto => pareto(map),
-        Drawn::Structure => structure(map),
+        MapQuantity::Pareto => pareto(map),
+        MapQuantity::Structure => structure(map),
         _ => quantity(map, what),
     }
 }
@@ -77,13 +77,13 @@ fn folds(map: &Map) -> impl Iterator<Item = Series> {
     })
 }
 
-fn quantity(map: &Map, what: Drawn) -> Outcome<String> {
+fn quantity(map: &Map, what: MapQuantity) -> Outcome<String> {
     let (name, title) = match what {
-        Drawn::Efficiency => ("efficiency", "Lighthill efficiency"),
-        Drawn::Speed => ("speed_over_length_per_s", "speed |d|/(L T) [1/s]"),
-        Drawn::Amplitude => ("amplitude_rad", "largest joint angle [rad]"),
-        Drawn::Rotation => ("rotation_rad", "rotation of a cycle [rad]"),
-        Drawn::Lateral => ("lateral_over_length", "Y/L of a cycle"),
+        MapQuantity::Efficiency => ("efficiency", "Lighthill efficiency"),
+        MapQuantity::Speed => ("speed_over_length_per_s", "speed |d|/(L T) [1/s]"),
+        MapQuantity::Amplitude => ("amplitude_rad", "largest joint angle [rad]"),
+        MapQuantity::Rotation => ("rotation_rad", "rotation of a cycle [rad]"),
+        MapQuantity::Lateral => ("lateral_over_length", "Y/L of a cycle"),
         _ => ("displacement_over_length", "X/L of a cycle"),
     };
     let found = map.quantities.iter().find(|one| one.name == name);
@@ -153,8 +153,8 @@ fn structure(map: &Map) -> Outcome<String> {
     });
     let mut series = vec![Series::Cells(cells.collect())];
     series.extend(folds(map));
-    let told = kinds.iter().take(KINDS.len() - 1);
-    let mut legend: Vec<(String, RGBColor)> = told
+    let named = kinds.iter().take(KINDS.len() - 1);
+    let mut legend: Vec<(String, RGBColor)> = named
         .map(|(kind, count)| (format!("{kind}: {count}"), color(kind)))
         .collect();
     let rest = kinds.iter().skip(KINDS.len() - 1);

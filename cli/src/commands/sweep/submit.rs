@@ -79,9 +79,9 @@ impl SlurmJob {
             })
         };
         let folder = absolute(&self.folder)?;
-        let told = self.output.is_some();
+        let given = self.output.is_some();
         let script = self.output.unwrap_or_else(|| self.folder.join("slurm.sh"));
-        if told {
+        if given {
             may_be_written(&script)?;
         }
         if let Some(line) = self.option.iter().find(|option| option.contains('\n')) {

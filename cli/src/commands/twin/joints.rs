@@ -16,7 +16,7 @@ pub(super) struct Joints {
     now: [f64; 2],
     since: Duration,
     /// Angles of the last report.
-    told: Option<[f64; 2]>,
+    reported: Option<[f64; 2]>,
 }
 
 impl Joints {
@@ -27,10 +27,14 @@ impl Joints {
             (self.now, self.since) = (angles, at);
         }
         let rests = at.saturating_sub(self.since) >= AT_REST;
-        if !rests || self.told.is_some_and(|told| !apart(told, angles)) {
+        if !rests
+            || self
+                .reported
+                .is_some_and(|reported| !apart(reported, angles))
+        {
             return None;
         }
-        self.told = Some(angles);
+        self.reported = Some(angles);
         let [front, back] = angles.map(|angle| tidy(angle.to_degrees()));
         Some(format!(
             "{:9.2} s  joints  front {front:+.1}°  back {back:+.1}°",

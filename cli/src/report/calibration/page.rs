@@ -261,7 +261,7 @@ fn drawn_runs(calibration: &Calibration<'_>) -> Outcome<Vec<DrawnRun>> {
     let fitted = answers
         .zip(&calibration.found.runs)
         .enumerate()
-        .filter(|(_, (_, run))| !run.is_told())
+        .filter(|(_, (_, run))| !run.is_reported())
         .map(|(index, (answer, run))| {
             let title = format!("{} · {} · {}", index + 1, answer.file, answer.gait);
             drawn("run", title, run)

@@ -36,7 +36,7 @@ pub(crate) fn tables(
         ),
         (
             "residuals.csv",
-            "what the fit leaves of every run",
+            "residuals of the fit for every run",
             residuals(evidence, names)?,
         ),
         (
@@ -126,7 +126,7 @@ fn runs(found: &CampaignFit, names: &[String]) -> Outcome<String> {
     );
     let rows = found.runs.iter().zip(names).map(|(run, name)| {
         let cycles = &run.cycles;
-        let front = if run.is_told() {
+        let front = if run.is_reported() {
             ""
         } else {
             run.poses.front.word()

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::body::{Look, Window, covered, draw};
+use super::body::{BodyStyle, Window, covered, draw};
 use super::joints::Plane;
 use super::{Swimming, time_color};
 use crate::failure::Outcome;
@@ -58,14 +58,14 @@ fn image(swimming: &Swimming, window: &Window, now: usize) -> Drawing {
     let (Some(first), Some(moment)) = (swimming.moments.first(), swimming.moments.get(now)) else {
         return drawing;
     };
-    let ghost = Look {
+    let ghost = BodyStyle {
         color: AXIS,
         opacity: 0.35,
         whole: false,
     };
     draw(&mut drawing, window, swimming, first, ghost);
     let color = time_color(0.75);
-    let body = Look {
+    let body = BodyStyle {
         color,
         opacity: 1.0,
         whole: true,
@@ -82,7 +82,7 @@ fn image(swimming: &Swimming, window: &Window, now: usize) -> Drawing {
     drawing.line(&shapes, 2.4, (color, 1.0));
     drawing.disc(plane.at(moment.phi), 6.0, (color, 1.0));
     let along = moment.pose.position().x / swimming.length();
-    let told = format!("x/L = {}", number(along, 3));
-    drawing.words((16.0, height - 16.0), WORDS, INK, Anchor::Start, &told);
+    let caption = format!("x/L = {}", number(along, 3));
+    drawing.words((16.0, height - 16.0), WORDS, INK, Anchor::Start, &caption);
     drawing
 }

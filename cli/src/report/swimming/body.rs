@@ -102,7 +102,7 @@ pub(super) fn covered(swimming: &Swimming, moment: &Moment) -> Vec<Vector2<f64>>
 
 /// Style of a body.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Look {
+pub(super) struct BodyStyle {
     pub(super) color: RGBColor,
     pub(super) opacity: f64,
     /// With joints, a mark at its head and the sphere; else a ghost.
@@ -115,7 +115,7 @@ pub(super) fn draw(
     window: &Window,
     swimming: &Swimming,
     moment: &Moment,
-    look: Look,
+    look: BodyStyle,
 ) {
     let breadth = (BREADTH * swimming.length() * window.scale).max(2.5);
     let [back_tip, back, front, front_tip] =

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::body::{Look, Window, covered, draw, extent};
+use super::body::{BodyStyle, Window, covered, draw, extent};
 use super::joints::Plane;
 use super::{Swimming, time_color};
 use crate::report::drawing::{Anchor, Drawing};
@@ -90,7 +90,7 @@ fn bodies_and_path(drawing: &mut Drawing, window: &Window, swimming: &Swimming, 
     for place in shown {
         if let Some(moment) = swimming.moments.get(*place) {
             let age = share(swimming, *place);
-            let look = Look {
+            let look = BodyStyle {
                 color: time_color(age),
                 opacity: if *place == last {
                     1.0
@@ -134,12 +134,12 @@ fn scale_bar(drawing: &mut Drawing, swimming: &Swimming, scale: f64, y: f64) {
         drawing.line(&[(end, y - 5.0), (end, y + 5.0)], 1.6, (INK, 1.0));
     }
     let metres = part * length;
-    let told = if metres < 1.0 {
+    let caption = if metres < 1.0 {
         format!("{part} L = {} mm", (metres * 1e4).round() / 10.0)
     } else {
         format!("{part} L = {} m", (metres * 1e2).round() / 100.0)
     };
-    drawing.words((right + 10.0, y + 5.0), WORDS, INK, Anchor::Start, &told);
+    drawing.words((right + 10.0, y + 5.0), WORDS, INK, Anchor::Start, &caption);
 }
 
 /// Legend of the colours.

@@ -1,8 +1,8 @@
 //! One extremal, from a place on a family to where it ends: traced once up to φ₁ = −φ₂, and on from there for each line.
 
-use super::super::Fates;
+use super::super::ExtremalOutcomes;
 use super::super::flow::{
-    DiagonalContacts, FINE, Quarter, Touch, TraceEnd, TraceOptions, follow, lasting,
+    DiagonalContacts, FINE, Quarter, Touch, TraceEnd, TraceOptions, follow, nonempty_legs,
 };
 use super::super::start_family::{StartFamily, StartState};
 use super::{Candidate, MIDDLING, QuarterBranch, Search};
@@ -72,7 +72,7 @@ impl<'a> Search<'a> {
     /// The extremal of a shot on its line. Returns `None` if it does not end properly.
     pub(super) fn miss_of(&self, shot: &Shot<'_>, line: QuarterBranch<'_>) -> Option<Miss> {
         let quarter = self.onwards(shot, line)?;
-        let arcs = lasting(&quarter.legs).fold(0, |arcs: u64, leg| {
+        let arcs = nonempty_legs(&quarter.legs).fold(0, |arcs: u64, leg| {
             let arc = leg.motion.bound().map_or(1, |index| 2 + index as u64);
             arcs.wrapping_mul(31).wrapping_add(arc)
         });
@@ -130,7 +130,7 @@ impl<'a> Search<'a> {
     }
 }
 
-impl Fates {
+impl ExtremalOutcomes {
     /// Counts one more of those that end where they first meet φ₁ = −φ₂.
     pub(super) fn count(&mut self, shot: Option<&Shot<'_>>) {
         self.sent += 1;
@@ -141,7 +141,7 @@ impl Fates {
             self.wrong_way += 1;
             return;
         };
-        match quarter.fate {
+        match quarter.outcome {
             TraceEnd::Ended => {
                 self.ended += 1;
                 let missed = (quarter.end[3] - final_y).abs();

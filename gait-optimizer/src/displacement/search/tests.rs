@@ -90,7 +90,7 @@ fn neighbour_gain(search: &Search<'_>, family: &StartFamily, candidate: &Candida
 }
 
 fn runs_along_a_diagonal(candidate: &Candidate) -> bool {
-    let mut kinds = lasting(&candidate.quarter.legs).map(|leg| leg.motion.kind());
+    let mut kinds = nonempty_legs(&candidate.quarter.legs).map(|leg| leg.motion.kind());
     kinds.any(|kind| kind == ArcKind::Diagonal)
 }
 

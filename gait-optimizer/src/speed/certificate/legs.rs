@@ -267,12 +267,12 @@ pub(super) fn pose_at(panels: &[Panel<f64>], u: f64) -> [f64; 3] {
 
 /// Arcs of a gait: those of the file, if they cover the whole cycle.
 pub(super) fn arcs(region: &Region, file: &GaitFile, gait: &AnyGait) -> Vec<GaitArc> {
-    let told = file.arcs.iter().filter(|arc| arc.to > arc.from);
-    let until = told.clone().try_fold(0.0, |until: f64, arc| {
+    let stated = file.arcs.iter().filter(|arc| arc.to > arc.from);
+    let until = stated.clone().try_fold(0.0, |until: f64, arc| {
         ((arc.from - until).abs() < 1e-12).then_some(arc.to)
     });
     if until.is_some_and(|until| (until - 1.0).abs() < 1e-12) {
-        told.copied().collect()
+        stated.copied().collect()
     } else {
         between_corners(region, file, gait)
     }

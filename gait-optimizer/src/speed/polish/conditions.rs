@@ -72,7 +72,7 @@ impl Conditions<'_> {
         self.setting.equality_count()
     }
 
-    pub(super) fn look(&self, z: &DVector<f64>, y: Option<&DVector<f64>>) -> Option<Expansion> {
+    pub(super) fn evaluate(&self, z: &DVector<f64>, y: Option<&DVector<f64>>) -> Option<Expansion> {
         let Self {
             setting,
             layout,
@@ -80,13 +80,13 @@ impl Conditions<'_> {
             equations,
         } = self;
         let (of, at) = ((*layout, *rule), (z, y));
-        let mut look = Expansion::new(setting, of, at, equations.len())?;
+        let mut evaluate = Expansion::new(setting, of, at, equations.len())?;
         let Expansion {
             values,
             slopes,
             hessian,
             ..
-        } = &mut look;
+        } = &mut evaluate;
         for (row, equation) in (self.global()..).zip(*equations) {
             match *equation {
                 Equation::Pace { arc, joint, way } => {
@@ -125,7 +125,7 @@ impl Conditions<'_> {
                 }
             }
         }
-        Some(look)
+        Some(evaluate)
     }
 }
 

@@ -52,25 +52,29 @@ pub(super) fn judge(
             ),
         "{event:?} {asked:?} fed the lease"
     );
-    let told = || std::format!("{before:?}, {event:?} {asked:?}: {all:?}");
+    let context = || std::format!("{before:?}, {event:?} {asked:?}: {all:?}");
     let only = |allowed: &[StateName]| all.iter().all(|state| allowed.contains(state));
     if let Some(Request::EStop) = asked {
-        assert!(only(&[EStopped]), "{}", told());
+        assert!(only(&[EStopped]), "{}", context());
     }
     if let Some(Request::Stop) = asked {
-        assert!(only(&[Stopping, Settling, Stopped, EStopped]), "{}", told());
+        assert!(
+            only(&[Stopping, Settling, Stopped, EStopped]),
+            "{}",
+            context()
+        );
     }
     if let Event::Reset(reason) = event {
         let latched = before == EStopped && reason != ResetReason::PowerOn;
         let expected = if latched { EStopped } else { Stopped };
-        assert!(only(&[expected]), "{}", told());
+        assert!(only(&[expected]), "{}", context());
         return;
     }
     if seen.armed {
         // The host that arms is alive.
-        assert!(seen.fresh, "{}", told());
+        assert!(seen.fresh, "{}", context());
         // Arming clears no e-stop.
-        assert!(before != EStopped, "{}", told());
+        assert!(before != EStopped, "{}", context());
         return;
     }
     match before {
@@ -81,12 +85,16 @@ pub(super) fn judge(
                 (Event::Ask(_), Some(Request::ClearEStop { count: 0 }))
             ) && seen.fresh =>
         {
-            assert!(only(&OFF), "{}", told());
+            assert!(only(&OFF), "{}", context());
         }
-        EStopped => assert!(only(&[EStopped]), "{}", told()),
-        Stopped => assert!(only(&OFF), "{}", told()),
+        EStopped => assert!(only(&[EStopped]), "{}", context()),
+        Stopped => assert!(only(&OFF), "{}", context()),
         Stopping | Settling => {
-            assert!(only(&[Stopping, Settling, Stopped, EStopped]), "{}", told());
+            assert!(
+                only(&[Stopping, Settling, Stopped, EStopped]),
+                "{}",
+                context()
+            );
         }
         _ => {
             // A step that has stopped a powered robot does not start it again.
@@ -95,7 +103,7 @@ pub(super) fn judge(
             assert!(
                 rest.iter().all(|state| OFF.contains(state)),
                 "{} {after:?}",
-                told()
+                context()
             );
         }
     }

@@ -2,7 +2,7 @@
 
 use calibrate::evidence::{CurvePoint, Evidence, EvidenceDocument, Pair};
 use calibrate::{
-    CampaignData, CampaignFit, FurtherFit, Intervals, MeasuredServo, RunResult, c_t_form,
+    CampaignData, CampaignFit, Intervals, MeasuredServo, NuisanceFit, RunResult, c_t_form,
     other_gaits,
 };
 use serde::Serialize;
@@ -164,13 +164,13 @@ impl FitOutput {
 #[derive(Serialize)]
 pub(super) struct NuisanceOutput<'a> {
     #[serde(flatten)]
-    fit: &'a FurtherFit,
+    fit: &'a NuisanceFit,
     /// Swimmer file with the fitted values for which it has keys.
     swimmer: String,
 }
 
 impl<'a> NuisanceOutput<'a> {
-    pub(super) fn new(fit: &'a FurtherFit) -> Self {
+    pub(super) fn new(fit: &'a NuisanceFit) -> Self {
         Self {
             fit,
             swimmer: fit.swimmer.to_toml(),

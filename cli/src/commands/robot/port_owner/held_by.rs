@@ -8,9 +8,9 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::ValueEnum;
-use host_link::port::BesidePort;
+use host_link::port::OccupiedPort;
 
-use super::relay::{Ask, Relayed, Unanswered};
+use super::relay::{PortRequest, Relayed, Unanswered};
 use super::socket::{HEARD, dial, folder, is_held, note, socket_name};
 use super::take_over;
 use crate::failure::{Failure, Outcome};
@@ -45,13 +45,13 @@ impl HeldBy {
         if !is_held(&socket) {
             return None;
         }
-        let told = fs::read_to_string(note(&socket)).unwrap_or_default();
-        let mut told = told.lines();
+        let note_text = fs::read_to_string(note(&socket)).unwrap_or_default();
+        let mut note_text = note_text.lines();
         Some(Self {
             port: port.to_owned(),
             socket,
-            command: told.next().unwrap_or("swimmer").to_owned(),
-            process: told.next().unwrap_or("unknown").to_owned(),
+            command: note_text.next().unwrap_or("swimmer").to_owned(),
+            process: note_text.next().unwrap_or("unknown").to_owned(),
         })
     }
 
@@ -59,8 +59,8 @@ impl HeldBy {
     ///
     /// # Errors
     /// [`Failure::Tried`] with the robot's or the link's word, or when the other process does not answer.
-    pub(in super::super) fn ask(&self, ask: Ask) -> Outcome<Option<Relayed>> {
-        self.try_ask(ask).map_err(|unanswered| match unanswered {
+    pub(in super::super) fn ask(&self, ask: PortRequest) -> Outcome<Option<Relayed>> {
+        self.try_request(ask).map_err(|unanswered| match unanswered {
             Unanswered::Refused(failure) => failure,
             Unanswered::Hangs => Failure::Tried(format!(
                 "{}. `swimmer robot estop --port {}` stops the robot all the same; for anything else end that process (kill -9 {})",
@@ -75,7 +75,10 @@ impl HeldBy {
     ///
     /// # Errors
     /// [`Unanswered`].
-    pub(in super::super) fn try_ask(&self, ask: Ask) -> Result<Option<Relayed>, Unanswered> {
+    pub(in super::super) fn try_request(
+        &self,
+        ask: PortRequest,
+    ) -> Result<Option<Relayed>, Unanswered> {
         let Some(word) = ask.to_possible_value() else {
             return Ok(None);
         };
@@ -92,8 +95,8 @@ impl HeldBy {
                 return Ok((!line.is_empty()).then_some(line));
             }
             reader.get_ref().set_read_timeout(Some(match ask {
-                Ask::EStop => PATIENCE_WITH_AN_ESTOP,
-                Ask::Stop => PATIENCE_WITH_A_STOP,
+                PortRequest::EStop => PATIENCE_WITH_AN_ESTOP,
+                PortRequest::Stop => PATIENCE_WITH_A_STOP,
                 _ => PATIENCE_WITH_HOLDER,
             }))?;
             line.clear();
@@ -136,8 +139,8 @@ impl HeldBy {
     }
 
     /// A second connection to the robot's device. Returns `None` if the port has none.
-    pub(in super::super) fn beside(&self) -> Option<BesidePort> {
-        take_over::beside(&self.port)
+    pub(in super::super) fn occupied(&self) -> Option<OccupiedPort> {
+        take_over::occupied(&self.port)
     }
 
     /// Ends that process, so that the port is free.
@@ -199,11 +202,11 @@ mod tests {
 
         let holder = PortHolder::announce_in(Some(place), port, "swimmer robot play");
         let held = HeldBy::of_in(place, port).unwrap();
-        let told = held.to_string();
+        let note_text = held.to_string();
         assert!(
-            told.contains("`swimmer robot play` (process ")
-                && told.contains("swimmer robot stop --port /dev/rfcomm7"),
-            "{told}"
+            note_text.contains("`swimmer robot play` (process ")
+                && note_text.contains("swimmer robot stop --port /dev/rfcomm7"),
+            "{note_text}"
         );
         drop(holder);
         assert!(HeldBy::of_in(place, port).is_none());
@@ -223,12 +226,12 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let _holder =
             PortHolder::announce_in(Some(folder.path()), "/tmp/my robot", "swimmer robot play");
-        let told = HeldBy::of_in(folder.path(), "/tmp/my robot")
+        let note_text = HeldBy::of_in(folder.path(), "/tmp/my robot")
             .unwrap()
             .to_string();
         assert!(
-            told.contains("`swimmer robot stop --port '/tmp/my robot'`"),
-            "{told}"
+            note_text.contains("`swimmer robot stop --port '/tmp/my robot'`"),
+            "{note_text}"
         );
     }
 
@@ -241,7 +244,7 @@ mod tests {
         while dial(&path).is_ok() {}
         let held = HeldBy::of_in(folder.path(), "/dev/rfcomm7").unwrap();
         let begun = std::time::Instant::now();
-        let unanswered = held.try_ask(Ask::EStop).unwrap_err();
+        let unanswered = held.try_request(PortRequest::EStop).unwrap_err();
         assert!(matches!(unanswered, Unanswered::Hangs), "{unanswered:?}");
         assert!(begun.elapsed() < TO_BE_HEARD, "{:?}", begun.elapsed());
     }
@@ -253,7 +256,7 @@ mod tests {
         let _holder = PortHolder::announce_in(Some(folder.path()), "/dev/rfcomm7", "x");
         let held = HeldBy::of_in(folder.path(), "/dev/rfcomm7").unwrap();
         let begun = std::time::Instant::now();
-        let unanswered = held.try_ask(Ask::EStop).unwrap_err();
+        let unanswered = held.try_request(PortRequest::EStop).unwrap_err();
         assert!(matches!(unanswered, Unanswered::Hangs), "{unanswered:?}");
         let waited = begun.elapsed();
         assert!(

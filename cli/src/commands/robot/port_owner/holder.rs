@@ -15,7 +15,7 @@ use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
 use super::super::port::AnyPort;
 use super::halt_signal::HaltSignal;
-use super::relay::{Ask, Relayed};
+use super::relay::{PortRequest, Relayed};
 use super::socket::{HEARD, folder, is_held, note, socket_name};
 
 /// Longest wait for the request of a process that has connected.
@@ -29,14 +29,14 @@ const LISTEN: Timespec = Timespec {
 /// Holds the port, and receives the requests of other processes.
 pub(in super::super) struct PortHolder {
     open: Option<Open>,
-    asked: Vec<(Ask, Asker)>,
+    asked: Vec<(PortRequest, Requester)>,
     halts: HaltSignal,
 }
 
 /// Another process, which waits for an answer.
-pub(in super::super) struct Asker(UnixStream);
+pub(in super::super) struct Requester(UnixStream);
 
-impl Asker {
+impl Requester {
     /// Sends the reply. The other process may have ended; its request has been served.
     pub(in super::super) fn answer(mut self, answer: &Relayed) {
         let _ = serde_json::to_string(answer)
@@ -48,7 +48,7 @@ impl Asker {
 /// A socket at which a thread listens.
 struct Open {
     path: PathBuf,
-    heard: mpsc::Receiver<(Ask, Asker)>,
+    heard: mpsc::Receiver<(PortRequest, Requester)>,
     ended: Arc<AtomicBool>,
 }
 
@@ -85,7 +85,7 @@ impl PortHolder {
     }
 
     /// Requests with their senders, the most urgent first.
-    pub(in super::super) fn take_asked(&mut self) -> Vec<(Ask, Asker)> {
+    pub(in super::super) fn take_requests(&mut self) -> Vec<(PortRequest, Requester)> {
         self.asked();
         self.asked.sort_by_key(|(ask, _)| *ask as u8);
         if self.asked.iter().any(|(ask, _)| ask.halt().is_some()) {
@@ -96,8 +96,8 @@ impl PortHolder {
 
     /// Serves all requests.
     pub(in super::super) fn serve(&mut self, robot: &mut Robot<AnyPort>) {
-        for (ask, asker) in self.take_asked() {
-            asker.answer(&ask.of(robot));
+        for (ask, requester) in self.take_requests() {
+            requester.answer(&ask.of(robot));
         }
     }
 }
@@ -118,7 +118,7 @@ impl Open {
                             halts.set(halt);
                         }
                         // The holder may be ending; then the stream is closed, and the sender tries again.
-                        let _ = hears.send((ask, Asker(stream)));
+                        let _ = hears.send((ask, Requester(stream)));
                     }
                 }
             }
@@ -135,13 +135,13 @@ impl Drop for Open {
     }
 }
 
-fn hear(mut stream: &UnixStream) -> Option<Ask> {
+fn hear(mut stream: &UnixStream) -> Option<PortRequest> {
     stream.set_nonblocking(false).ok()?;
     stream.set_read_timeout(Some(PATIENCE_WITH_ASKER)).ok()?;
     stream.set_write_timeout(Some(PATIENCE_WITH_ASKER)).ok()?;
     let mut line = String::new();
     BufReader::new(stream).read_line(&mut line).ok()?;
-    let ask = Ask::from_str(line.trim(), false).ok()?;
+    let ask = PortRequest::from_str(line.trim(), false).ok()?;
     writeln!(stream, "{HEARD}").ok()?;
     Some(ask)
 }

@@ -18,7 +18,7 @@ use crate::failure::{Failure, Outcome};
 /// Something that the holder of the port does for another process. The word is the line on the socket.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 #[value(rename_all = "lowercase")]
-pub(in super::super) enum Ask {
+pub(in super::super) enum PortRequest {
     /// Drop the pulses.
     EStop,
     /// Ramp to neutral.
@@ -34,7 +34,7 @@ pub(in super::super) enum Ask {
     Status,
     /// Say which robot it is: [`Introduction`].
     Introduce,
-    /// Report the last received state of the robot, without a request to the robot: [`News`].
+    /// Report the last received state of the robot, without a request to the robot: [`LinkReport`].
     News,
 }
 
@@ -64,13 +64,13 @@ impl Introduction {
 
 /// State of a robot and its link.
 #[derive(Debug, Default, Serialize, Deserialize)]
-pub(in super::super) struct News {
+pub(in super::super) struct LinkReport {
     pub(in super::super) telemetry: Option<Telemetry>,
     pub(in super::super) link: LinkCounters,
     pub(in super::super) clock: Option<ClockFit>,
 }
 
-impl News {
+impl LinkReport {
     fn of(robot: &Robot<AnyPort>) -> Self {
         Self {
             telemetry: robot.telemetry().copied(),
@@ -80,7 +80,7 @@ impl News {
     }
 }
 
-impl Ask {
+impl PortRequest {
     /// The stop that this requests. Returns `None` for other requests.
     pub(in super::super) fn halt(self) -> Option<Halt> {
         match self {
@@ -118,8 +118,8 @@ impl Ask {
                 .and_then(|()| done(robot, PAUSED_DETACHED)),
             Self::Resume => robot.resume().and_then(|()| done(robot, "Resumed.")),
             Self::Status => RobotState::of(robot).map(|doing| Relayed::of(&doing)),
-            Self::Introduce => Introduction::of(robot).map(|told| Relayed::data(&told)),
-            Self::News => Ok(Relayed::data(&News::of(robot))),
+            Self::Introduce => Introduction::of(robot).map(|introduction| Relayed::data(&introduction)),
+            Self::News => Ok(Relayed::data(&LinkReport::of(robot))),
         };
         answered.unwrap_or_else(|error| Relayed::refused(error.to_string()))
     }
@@ -177,7 +177,7 @@ impl Relayed {
     pub(in super::super) fn read<T: DeserializeOwned>(self) -> Outcome<T> {
         serde_json::from_value(self.answer).map_err(|error| {
             Failure::Tried(format!(
-                "the program that has the port tells something else than was asked ({error}); is it of another version? End it and try again"
+                "the program that holds the port sent an unexpected reply ({error}); is it of another version? End it and try again"
             ))
         })
     }

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use host_link::port::BesidePort;
+use host_link::port::OccupiedPort;
 use rustix::process::{Pid, Signal, kill_process};
 
 use super::super::port::is_a_path;
@@ -13,11 +13,11 @@ const TO_LET_GO: Duration = Duration::from_secs(1);
 const LOOK_AGAIN: Duration = Duration::from_millis(5);
 
 /// A second connection to the device. Returns `None` if the port is no device or cannot be opened twice.
-pub(super) fn beside(port: &str) -> Option<BesidePort> {
+pub(super) fn occupied(port: &str) -> Option<OccupiedPort> {
     if !is_a_path(port) {
         return None;
     }
-    BesidePort::open(Path::new(port)).ok()
+    OccupiedPort::open(Path::new(port)).ok()
 }
 
 /// Ends the process, which must be a `swimmer`, and waits until `is_gone`.

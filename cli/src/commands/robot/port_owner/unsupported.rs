@@ -7,7 +7,7 @@ use host_link::testing::MockPort;
 
 use super::super::port::AnyPort;
 use super::halt_signal::HaltSignal;
-use super::relay::{Ask, Relayed, Unanswered};
+use super::relay::{PortRequest, Relayed, Unanswered};
 use crate::failure::Outcome;
 
 /// Holds the port without an announcement.
@@ -30,7 +30,7 @@ impl PortHolder {
     }
 
     /// Always empty.
-    pub(in super::super) fn take_asked(&mut self) -> Vec<(Ask, Asker)> {
+    pub(in super::super) fn take_requests(&mut self) -> Vec<(PortRequest, Requester)> {
         Vec::new()
     }
 
@@ -39,9 +39,9 @@ impl PortHolder {
 }
 
 /// Process with a request. Unreachable on this platform.
-pub(in super::super) enum Asker {}
+pub(in super::super) enum Requester {}
 
-impl Asker {
+impl Requester {
     /// Cannot be.
     pub(in super::super) fn answer(self, _answer: &Relayed) {
         match self {}
@@ -58,17 +58,20 @@ impl HeldBy {
     }
 
     /// Cannot be.
-    pub(in super::super) fn ask(&self, _ask: Ask) -> Outcome<Option<Relayed>> {
+    pub(in super::super) fn ask(&self, _ask: PortRequest) -> Outcome<Option<Relayed>> {
         match *self {}
     }
 
     /// Cannot be.
-    pub(in super::super) fn try_ask(&self, _ask: Ask) -> Result<Option<Relayed>, Unanswered> {
+    pub(in super::super) fn try_request(
+        &self,
+        _ask: PortRequest,
+    ) -> Result<Option<Relayed>, Unanswered> {
         match *self {}
     }
 
     /// Cannot be.
-    pub(in super::super) fn beside(&self) -> Option<MockPort> {
+    pub(in super::super) fn occupied(&self) -> Option<MockPort> {
         match *self {}
     }
 

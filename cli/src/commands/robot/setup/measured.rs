@@ -38,7 +38,11 @@ pub(super) fn full_range(limits: &RobotLimits) -> PulseRange {
 }
 
 /// Describes what the readings show.
-pub(super) fn told(name: &str, found: &ServoProperties, settings: &ServoSettings) -> String {
+pub(super) fn measured_text(
+    name: &str,
+    found: &ServoProperties,
+    settings: &ServoSettings,
+) -> String {
     let mut parts = vec![
         if found.mirrored {
             "turns the other way: its sign is changed"
@@ -54,7 +58,7 @@ pub(super) fn told(name: &str, found: &ServoProperties, settings: &ServoSettings
     ];
     if !found.is_as_built() {
         parts.push(format!(
-            "turns {:.0} % of what it should: its slope is {} rad a µs",
+            "turns {:.0} % of the commanded angle: its slope is {} rad a µs",
             found.gain * 100.0,
             settings.slope_rad_per_us
         ));

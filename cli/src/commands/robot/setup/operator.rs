@@ -173,10 +173,10 @@ impl Operator {
             )));
         }
         let news = line.beat()?;
-        match news.filter(|told| armed && at_rest(told.state, told.cause)) {
-            Some(told) => Err(Failure::Tried(format!(
+        match news.filter(|telemetry| armed && at_rest(telemetry.state, telemetry.cause)) {
+            Some(telemetry) => Err(Failure::Tried(format!(
                 "the robot stopped: {}",
-                cause_in_words(told.cause)
+                cause_in_words(telemetry.cause)
             ))),
             None => Ok(()),
         }

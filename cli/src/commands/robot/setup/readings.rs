@@ -238,8 +238,8 @@ mod tests {
                 high,
                 after_high,
             };
-            let told = readings.evaluate(SWING).unwrap_err();
-            assert!(told.contains(words), "{told}");
+            let problem = readings.evaluate(SWING).unwrap_err();
+            assert!(problem.contains(words), "{problem}");
         }
     }
 }

@@ -95,7 +95,7 @@ impl Bench<'_> {
             format!("Are both links straight, as nearly as a dead band of ±{band} lets them?");
         if !self.operator.yes(self.line, true, &question, true)? {
             return Err(Failure::Tried(
-                "the links are not straight by what was saved: did a horn slip, or was an angle read with the wrong sign? Run `swimmer robot setup` again"
+                "with the saved settings the links are not straight: did a horn slip, or was an angle read with the wrong sign? Run `swimmer robot setup` again"
                     .to_owned(),
             ));
         }

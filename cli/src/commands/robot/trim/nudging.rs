@@ -104,7 +104,7 @@ impl Nudging {
     pub(super) fn draw(&self, frame: &mut Frame<'_>) {
         let [area] = Layout::vertical([Constraint::Length(9)]).areas(frame.area());
         let powered = match self.state {
-            None => "not heard: no telemetry comes".to_owned(),
+            None => "no telemetry received".to_owned(),
             Some(state @ (StateName::Stopped | StateName::EStopped)) => {
                 format!("{}: no pulses; p powers the servos", outputs::state(state))
             }

@@ -11,7 +11,7 @@ use link_protocol::Telemetry;
 use super::super::access::{Access, Contact, RobotConnection};
 use super::super::outputs::RobotState;
 use super::super::port::Pace;
-use super::super::port_owner::{Ask, Introduction, News};
+use super::super::port_owner::{Introduction, LinkReport, PortRequest};
 use super::super::status;
 use crate::failure::Outcome;
 use crate::output::{Output, aside};
@@ -23,14 +23,14 @@ const ASK_EVERY: Duration = Duration::from_millis(200);
 /// Source of a watcher's telemetry.
 pub(super) enum Source<'a> {
     Own(Box<RobotConnection>),
-    PortHolder(Box<Beside<'a>>),
+    PortHolder(Box<HolderConnection<'a>>),
 }
 
 /// Connection to the process that has the port.
-pub(super) struct Beside<'a> {
+pub(super) struct HolderConnection<'a> {
     access: &'a Access,
     introduction: Introduction,
-    news: News,
+    news: LinkReport,
     begun: Instant,
     /// The robot's clock at the telemetry seen last, µs.
     seen_us: Option<u64>,
@@ -61,14 +61,14 @@ impl<'a> Source<'a> {
             // Frames are seen only by who has the port.
             Contact::Direct(Box::new(access.connect(COMMAND, Pace::RealTime)?))
         } else {
-            access.contact(Ask::Introduce, COMMAND, Pace::RealTime)?
+            access.contact(PortRequest::Introduce, COMMAND, Pace::RealTime)?
         };
         Ok(match met {
             Contact::Direct(line) => Self::Own(line),
-            Contact::Relayed(relayed) => Self::PortHolder(Box::new(Beside {
+            Contact::Relayed(relayed) => Self::PortHolder(Box::new(HolderConnection {
                 access,
                 introduction: relayed.read()?,
-                news: News::default(),
+                news: LinkReport::default(),
                 begun: Instant::now(),
                 seen_us: None,
                 heard: Instant::now(),
@@ -155,7 +155,11 @@ impl<'a> Source<'a> {
             Self::Own(line) if estop => Ok(line.robot.estop().map(drop)?),
             Self::Own(line) => Ok(line.robot.stop().map(drop)?),
             Self::PortHolder(beside) => {
-                let ask = if estop { Ask::EStop } else { Ask::Stop };
+                let ask = if estop {
+                    PortRequest::EStop
+                } else {
+                    PortRequest::Stop
+                };
                 beside
                     .access
                     .contact(ask, COMMAND, Pace::RealTime)
@@ -195,10 +199,10 @@ impl<'a> Source<'a> {
     }
 }
 
-impl Beside<'_> {
+impl HolderConnection<'_> {
     fn beat(&mut self) -> Outcome<Beat> {
         sleep(ASK_EVERY);
-        let Some(relayed) = self.access.ask_holder(Ask::News)? else {
+        let Some(relayed) = self.access.request_holder(PortRequest::News)? else {
             return Ok(Beat::LetGo);
         };
         self.news = relayed.read()?;

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use calibrate::{
     CampaignData, CampaignFit, EvidenceOptions, FitOptions, advise, assess, calibrate_campaign,
-    fit_further, predict, weigh_evidence,
+    fit_nuisance, predict, weigh_evidence,
 };
 use judged::{Chance, LEVEL, holds};
 use lab::Lab;
@@ -26,7 +26,7 @@ fn fitted(campaign: &Campaign, data: &CampaignData) -> CampaignFit {
     let assessment = assess(&found, Some(&evidence)).unwrap();
     println!("{:?} {:?}", assessment.verdict, assessment.reasons);
     advise(campaign, &found).unwrap();
-    let _ = fit_further(&found, &[calibrate::NuisanceParameter::Scale]);
+    let _ = fit_nuisance(&found, &[calibrate::NuisanceParameter::Scale]);
     found
 }
 
@@ -80,9 +80,14 @@ fn told_results_fit_as_the_tracks_did() {
         written_down(&by_tracks, 0..6)
     ));
     let told = CampaignData::load(&all).unwrap();
-    assert_eq!((told.runs.len(), told.told.len()), (0, 6));
+    assert_eq!((told.runs.len(), told.reported_gaits.len()), (0, 6));
     let by_results = fitted(&all, &told);
-    assert!(by_results.runs.iter().all(calibrate::RunResult::is_told));
+    assert!(
+        by_results
+            .runs
+            .iter()
+            .all(calibrate::RunResult::is_reported)
+    );
     near(
         by_results.fit.sphere_radius,
         by_tracks.fit.sphere_radius,
@@ -102,7 +107,7 @@ fn told_results_fit_as_the_tracks_did() {
         runs: data.runs[..3].to_vec(),
         ..CampaignData::default()
     };
-    told.told = mixed.runs[4..]
+    told.reported_gaits = mixed.runs[4..]
         .iter()
         .map(|run| run.gait.load().unwrap())
         .collect();

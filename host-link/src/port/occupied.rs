@@ -17,12 +17,12 @@ use super::{Port, tty};
 
 /// Device that another program holds open.
 #[derive(Debug)]
-pub struct BesidePort {
+pub struct OccupiedPort {
     device: OwnedFd,
     opened: Instant,
 }
 
-impl BesidePort {
+impl OccupiedPort {
     /// Opens the device regardless of its lock, and discards unread input, which is old telemetry.
     ///
     /// # Errors
@@ -42,7 +42,7 @@ impl BesidePort {
     }
 }
 
-impl Port for BesidePort {
+impl Port for OccupiedPort {
     fn read(&mut self, buf: &mut [u8], timeout: Duration) -> io::Result<usize> {
         if buf.is_empty() {
             return Ok(0);
@@ -92,20 +92,20 @@ mod tests {
         }
         let mut buf = [0; 16];
         robot.write(b"telemetry").unwrap();
-        let mut beside = BesidePort::open(&path).unwrap();
-        beside.write(b"stop").unwrap();
+        let mut occupied = OccupiedPort::open(&path).unwrap();
+        occupied.write(b"stop").unwrap();
         let count = robot.read(&mut buf, Duration::from_secs(2)).unwrap();
         assert_eq!(&buf[..count], b"stop");
         robot.write(b"done").unwrap();
-        let count = beside.read(&mut buf, Duration::from_secs(2)).unwrap();
+        let count = occupied.read(&mut buf, Duration::from_secs(2)).unwrap();
         assert_eq!(&buf[..count], b"done", "and nothing of before");
-        drop((holder, beside));
+        drop((holder, occupied));
         SerialPort::open(name, 115_200).unwrap();
     }
 
     #[test]
     fn a_file_is_no_device() {
         let file = tempfile::NamedTempFile::new().unwrap();
-        assert!(BesidePort::open(file.path()).is_err());
+        assert!(OccupiedPort::open(file.path()).is_err());
     }
 }

@@ -2,9 +2,9 @@
 
 use crate::twin_campaigns;
 
-use calibrate::nuisance::{FittedParameter, FurtherFit, FurtherWarning};
+use calibrate::nuisance::{FittedParameter, NuisanceFit, NuisanceWarning};
 use calibrate::{
-    CampaignFit, FitOptions, FitWarning, NuisanceParameter, calibrate_campaign, fit_further,
+    CampaignFit, FitOptions, FitWarning, NuisanceParameter, calibrate_campaign, fit_nuisance,
 };
 use swimmer_files::ServoFile;
 use twin_campaigns::Laboratory;
@@ -16,10 +16,10 @@ fn noticed(found: &CampaignFit) -> Option<(f64, f64)> {
     })
 }
 
-fn fitted(laboratory: &Laboratory, further: &[NuisanceParameter]) -> FurtherFit {
+fn fitted(laboratory: &Laboratory, further: &[NuisanceParameter]) -> NuisanceFit {
     let (campaign, data) = laboratory.campaign();
     let found = calibrate_campaign(&campaign, &data, FitOptions::default()).unwrap();
-    fit_further(&found, further).unwrap()
+    fit_nuisance(&found, further).unwrap()
 }
 
 fn assert_holds(parameter: &FittedParameter, truth: f64) {
@@ -67,7 +67,7 @@ fn a_dead_band_is_noticed_and_fitted() {
             "{text}"
         );
 
-        let fit = fit_further(&found, &[NuisanceParameter::DeadBand]).unwrap();
+        let fit = fit_nuisance(&found, &[NuisanceParameter::DeadBand]).unwrap();
         assert_holds(fit.parameter("dead band").unwrap(), truth);
         assert_holds(
             fit.parameter("r_s").unwrap(),
@@ -115,7 +115,7 @@ fn reflectors_beside_the_middle_are_found() {
     campaign.reflectors.front.at[0] += 0.03;
     campaign.reflectors.back.at[0] += 0.03;
     let found = calibrate_campaign(&campaign, &data, FitOptions::default()).unwrap();
-    let fit = fit_further(&found, &[NuisanceParameter::MarkerOffset]).unwrap();
+    let fit = fit_nuisance(&found, &[NuisanceParameter::MarkerOffset]).unwrap();
     let along = fit.parameter("marker offset along").unwrap();
     assert_holds(along, -0.03);
     assert!(
@@ -138,8 +138,7 @@ fn a_small_sphere_cannot_be_told_from_the_tangential_drag() {
             fit.parameters, fit.correlations, fit.warnings
         );
         let pair = ["r_s", "c_t/mu"];
-        let alike =
-            |w: &FurtherWarning| matches!(w, FurtherWarning::Alike { names, .. } if *names == pair);
+        let alike = |w: &NuisanceWarning| matches!(w, NuisanceWarning::Alike { names, .. } if *names == pair);
         fit.warnings.iter().any(alike)
     };
     assert!(alike(0.01));

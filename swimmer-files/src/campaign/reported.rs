@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 /// A value of a run with its uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ToldValue {
+pub struct ReportedValue {
     /// Its mean over cycles.
     pub mean: f64,
     /// `_sd`: its standard deviation from cycle to cycle.
@@ -15,17 +15,17 @@ pub struct ToldValue {
 
 /// Reported results of a run, in m and rad; `None` for missing ones.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct ToldRun {
+pub struct ReportedResults {
     /// X.
-    pub x: Option<ToldValue>,
+    pub x: Option<ReportedValue>,
     /// Y.
-    pub y: Option<ToldValue>,
+    pub y: Option<ReportedValue>,
     /// Net turn.
-    pub turn: Option<ToldValue>,
+    pub turn: Option<ReportedValue>,
     /// ΔY.
-    pub delta_y: Option<ToldValue>,
+    pub delta_y: Option<ReportedValue>,
     /// Δθ.
-    pub delta_theta: Option<ToldValue>,
+    pub delta_theta: Option<ReportedValue>,
     /// Number of cycles that the means are taken over.
     pub cycles: Option<usize>,
     /// The table that they are from, if any.
@@ -45,7 +45,9 @@ const VALUES: [(&str, &str, f64); 5] = [
 const MOST_CYCLES: f64 = 1e6;
 
 /// Results from the numbers of a run. Returns the key of the first invalid number, and the reason.
-pub(super) fn told(number: impl Fn(&str) -> Option<f64>) -> Result<ToldRun, (String, String)> {
+pub(super) fn reported(
+    number: impl Fn(&str) -> Option<f64>,
+) -> Result<ReportedResults, (String, String)> {
     let cycles = match number("cycles") {
         None => None,
         Some(count) if (1.0..=MOST_CYCLES).contains(&count) && count.fract() == 0.0 => {
@@ -54,7 +56,7 @@ pub(super) fn told(number: impl Fn(&str) -> Option<f64>) -> Result<ToldRun, (Str
             Some(count as usize)
         }
         Some(count) => {
-            let problem = format!("cycles = {count} must be how many there were: 1, 2, 3, …");
+            let problem = format!("cycles = {count} must be the number of cycles: 1, 2, 3, …");
             return Err(("cycles".to_owned(), problem));
         }
     };
@@ -104,20 +106,20 @@ pub(super) fn told(number: impl Fn(&str) -> Option<f64>) -> Result<ToldRun, (Str
         }
         if sd.is_some() && cycles.is_none_or(|cycles| cycles < 2) {
             let problem = format!(
-                "{} is the deviation from cycle to cycle: say by `cycles` of how many (2 at least), or give {}, the error of the mean",
+                "{} is the deviation from cycle to cycle: give the number of `cycles` (2 at least), or {}, the error of the mean",
                 key("_sd"),
                 key("_se")
             );
             return Err((key("_sd"), problem));
         }
-        Ok(Some(ToldValue {
+        Ok(Some(ReportedValue {
             mean: mean * si,
             sd,
             se,
         }))
     };
     let [x, y, turn, delta_y, delta_theta] = VALUES;
-    let told = ToldRun {
+    let reported = ReportedResults {
         x: value(x)?,
         y: value(y)?,
         turn: value(turn)?,
@@ -126,9 +128,9 @@ pub(super) fn told(number: impl Fn(&str) -> Option<f64>) -> Result<ToldRun, (Str
         cycles,
         table: None,
     };
-    if told.x.is_none() && told.delta_y.is_none() && told.delta_theta.is_none() {
-        let problem = "a run without a track tells x_mm, delta_y_mm or delta_theta_deg".to_owned();
+    if reported.x.is_none() && reported.delta_y.is_none() && reported.delta_theta.is_none() {
+        let problem = "a run without a track needs x_mm, delta_y_mm or delta_theta_deg".to_owned();
         return Err((String::new(), problem));
     }
-    Ok(told)
+    Ok(reported)
 }

@@ -1,4 +1,4 @@
-//! Warnings and results for faults of a laboratory: a table, compared with `tests/told/table.txt`, so that a change of behaviour
+//! Warnings and results for faults of a laboratory: a table, compared with `tests/messages/table.txt`, so that a change of behaviour
 //! is a change of that file.
 
 use crate::judged;
@@ -15,7 +15,7 @@ const SIX: &[f64] = &[30.0, 50.0, 70.0, 85.0, 100.0, 110.0];
 const FOUR: &[f64] = &[40.0, 65.0, 90.0, 110.0];
 
 /// Name of a fault, amplitudes of the runs, and the fault.
-type Case = (&'static str, &'static [f64], fn(&mut Lab));
+type Fault = (&'static str, &'static [f64], fn(&mut Lab));
 
 fn dead_band(lab: &mut Lab, degrees: f64) {
     for joint in &mut lab.joints {
@@ -29,7 +29,7 @@ fn offsets(lab: &mut Lab, degrees: [f64; 2]) {
     }
 }
 
-const CASES: &[Case] = &[
+const CASES: &[Fault] = &[
     ("nothing", SIX, |_| {}),
     ("nothing", FOUR, |_| {}),
     ("drift 0.2 mm/s", SIX, |lab| {
@@ -87,7 +87,7 @@ const CASES: &[Case] = &[
 const NOISES: [f64; 2] = [3e-4, 1e-3];
 
 /// Line of the table, and whether it is right: the truth within the intervals, or a refusal.
-fn line(case: &Case, noise: f64) -> (String, bool) {
+fn line(case: &Fault, noise: f64) -> (String, bool) {
     let (name, runs, change) = case;
     let mut lab = Lab::sparse(1).with_runs(runs).with_noise(noise);
     change(&mut lab);
@@ -136,12 +136,12 @@ fn told(reason: &str) -> String {
 
 #[test]
 fn what_is_told_and_what_comes_out() {
-    let jobs: Vec<(&Case, f64)> = CASES
+    let jobs: Vec<(&Fault, f64)> = CASES
         .iter()
         .flat_map(|case| NOISES.map(|noise| (case, noise)))
         .collect();
     let half = jobs.len() / 2;
-    let all = |jobs: &[(&Case, f64)]| -> Vec<(String, bool)> {
+    let all = |jobs: &[(&Fault, f64)]| -> Vec<(String, bool)> {
         jobs.iter()
             .map(|(case, noise)| line(case, *noise))
             .collect()
@@ -153,7 +153,7 @@ fn what_is_told_and_what_comes_out() {
     });
     let table: String = lines.iter().map(|(line, _)| line.as_str()).collect();
     println!("{table}");
-    let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/told/table.txt");
+    let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/messages/table.txt");
     if std::env::var_os("UPDATE_OUTCOMES").is_some() {
         std::fs::create_dir_all(golden.parent().unwrap()).unwrap();
         std::fs::write(&golden, &table).unwrap();
