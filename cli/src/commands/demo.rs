@@ -49,7 +49,7 @@ pub(crate) struct Demo {
     /// Seed of tank and cameras
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// The truth in the tank: purcell, robot, robot-slender or a swimmer file
+    /// The truth in the tank: a preset that `swimmer swimmers` lists, or a swimmer file
     #[arg(long, value_name = "SWIMMER", default_value = "robot")]
     swimmer: String,
     /// Robot of the demo
@@ -83,6 +83,12 @@ impl Demo {
     /// Goes round the loop and answers.
     pub(crate) fn run(self, output: Output) -> Outcome {
         let truth = load_robots_swimmer(&self.swimmer)?;
+        if let Some(passive) = truth.passive {
+            return Err(Failure::BadInput(format!(
+                "the {} joint of `{}` is passive; the demo drives both joints",
+                passive.joint, truth.name
+            )));
+        }
         let folder = match &self.output {
             Some(place) => NewFolder::start(place)?,
             None => NewFolder::start_free("demo-out")?,

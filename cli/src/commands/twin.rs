@@ -39,7 +39,7 @@ pub(crate) struct Twin {
     /// Listen here for the robot's bytes over TCP, as 127.0.0.1:7000
     #[arg(long, value_name = "ADDR")]
     tcp: Option<String>,
-    /// purcell, robot, robot-slender or a swimmer file
+    /// A preset that `swimmer swimmers` lists, or a swimmer file
     #[arg(long, value_name = "SWIMMER", default_value = "robot")]
     swimmer: String,
     /// Faults of the link, both directions: drop=P,flip=P,duplicate=P,reorder=P (a chance per frame, 5% or 0.05),

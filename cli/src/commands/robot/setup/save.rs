@@ -15,6 +15,14 @@ use super::{Bench, JOINTS, Setup, export};
 use crate::failure::{Failure, Outcome};
 use crate::quantity;
 
+/// Presets as which a robot can be configured.
+fn configurable_presets() -> Vec<&'static str> {
+    let can_be = |name: &&str| {
+        SwimmerFile::preset(name).is_some_and(|file| file.swimmer.common_drag().is_ok())
+    };
+    SwimmerFile::PRESETS.into_iter().filter(can_be).collect()
+}
+
 impl Bench<'_> {
     /// Swimmer whose lengths the robot has.
     pub(super) fn swimmer(&mut self, named: Option<SwimmerFile>) -> Outcome<SwimmerFile> {
@@ -30,7 +38,8 @@ impl Bench<'_> {
         ];
         let [front, middle, back] = lengths.map(|metres| (metres * 1e5).round() / 1e2);
         let question = format!(
-            "Which swimmer is it? A preset (purcell, robot, robot-slender) or the path of a swimmer file with its lengths; Enter: as the robot is configured, {name} ({front} / {middle} / {back} mm)"
+            "Which swimmer is it? A preset ({}) or the path of a swimmer file with its lengths; Enter: as the robot is configured, {name} ({front} / {middle} / {back} mm)",
+            configurable_presets().join(", ")
         );
         let standard = SwimmerFile {
             name,

@@ -55,7 +55,11 @@ const PROMPTS: &[Prompt] = &[
     Prompt("back, 4 of 4", "1", VALUE),
     Prompt("back: dead band", "", OFFERS),
     Prompt("back: how far", "60 60", OFFERS),
-    Prompt("Which swimmer is it?", "", OFFERS),
+    Prompt(
+        "Which swimmer is it? A preset (purcell, robot, robot-slender, elastic-tail)",
+        "",
+        OFFERS,
+    ),
     Prompt("Are both links straight", "", CONFIRMS),
     // The swing is optional: its n passes over the two prompts of each joint.
     Prompt("Swing each joint once", "y", [GoesOn, GoesOn, AsksAgain]),
