@@ -12,7 +12,8 @@
 //! - [`plan()`]: a chain of joined gaits that leads to a target and keeps away from walls; [`Planner`]: the same repeatedly, from
 //!   cycle to cycle.
 //! - [`demand`]: torque, power and Reynolds number in a fluid of known viscosity.
-//! - [`forecast()`]: the displacement as designed, as stored, as commanded and as turned, loss by loss, before a gait is sent.
+//! - [`forecast()`]: the displacement as designed, as stored, as commanded and as turned, loss by loss, before a gait is sent;
+//!   [`forecast_passive`]: the same with a spring in place of one servo.
 //!
 //! ```
 //! use forecast::{Played, Servos, forecast};
@@ -43,7 +44,8 @@ pub mod timing;
 
 pub use fluid::{Demand, demand};
 pub use losses::{
-    Forecast, ForecastError, Loss, Played, Servos, Stage, Verdict, forecast, thickness,
+    Forecast, ForecastError, Loss, Played, Servos, Stage, Verdict, forecast, forecast_passive,
+    thickness,
 };
 pub use net_motion::NetMotion;
 pub use plan::{Family, Kind, Member, Plan, PlanError, PlanRequest, Planner, Scaled, Step, plan};

@@ -8,17 +8,21 @@
 )]
 
 mod gap;
+mod passive;
 mod servos;
 mod stages;
 
+use gait_player::playback::PlayedPoint;
 use gait_player::table::TableError;
 use nalgebra::Vector2;
-use swimmer_files::{ServoFile, UnplayablePeriod, check_playable_period};
+use passive_joint::PassiveError;
+use swimmer_files::{AnyGait, ServoFile, UnplayablePeriod, check_playable_period};
 use swimmer_model::{Gait, InvalidSamples, Model, Swimmer, Tolerance};
 
 use crate::path::Polyline;
 use crate::reach::{Reach, reach};
 pub use gap::Gap;
+pub use passive::forecast_passive;
 pub use servos::Servos;
 pub(crate) use stages::verdict;
 
@@ -42,6 +46,9 @@ pub enum ForecastError {
     /// Its knots make no curve.
     #[error("the gait's knots make no curve: {0}")]
     Knots(#[from] InvalidSamples),
+    /// The passive joint has no limit cycle.
+    #[error(transparent)]
+    Passive(#[from] PassiveError),
     /// The gait leaves the servos' range.
     #[error(
         "the gait turns φ{} to {:.4} rad at u = {:.4}, beyond the servos' largest angle of {max_angle} rad, so no robot plays \
@@ -192,6 +199,32 @@ pub fn forecast<G: Gait<f64> + ?Sized>(
     gait: &G,
     played: &Played,
 ) -> Result<Forecast, ForecastError> {
+    let shape = |point: &PlayedPoint| Vector2::from(point.angles);
+    let motion = Motion {
+        of_curve: Ok,
+        of_path: |path: &[PlayedPoint]| Ok(path.iter().map(shape).collect()),
+    };
+    forecast_of(model, gait, played, &motion)
+}
+
+/// Motion of both joints for what the servos command, as a curve and along a path: that of the servos, or with the response of a
+/// passive joint.
+pub(crate) struct Motion<C, P> {
+    pub(crate) of_curve: C,
+    pub(crate) of_path: P,
+}
+
+fn forecast_of<G, C, P>(
+    model: &Model<f64>,
+    gait: &G,
+    played: &Played,
+    motion: &Motion<C, P>,
+) -> Result<Forecast, ForecastError>
+where
+    G: Gait<f64> + ?Sized,
+    C: Fn(AnyGait) -> Result<AnyGait, ForecastError>,
+    P: Fn(&[PlayedPoint]) -> Result<Vec<Vector2<f64>>, ForecastError>,
+{
     played.validate()?;
     let reach = reach(gait);
     // The table's own rounding is no trespass.
@@ -201,7 +234,7 @@ pub fn forecast<G: Gait<f64> + ?Sized>(
             max_angle: played.servos.largest_angle(),
         });
     }
-    let ways = stages::Ways::new(gait, played)?;
+    let ways = stages::Ways::new(gait, played, motion)?;
     let swum = ways.swum(model, gait);
     let designed = swum
         .first()

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use forecast::{NetMotion, Played, Servos, forecast};
+use forecast::{NetMotion, Played, Servos, forecast, forecast_passive};
 use serde::{Deserialize, Serialize};
 use swimmer_model::{CrossingShare, Tolerance, crossing_share, swim};
 
@@ -73,7 +73,7 @@ pub struct Output {
 /// Simulates one cycle. Warns if the gait is beyond the servos or the fluid of the swimmer file.
 ///
 /// # Errors
-/// The robot cannot play the gait, and [`Options::played`] is given; or it is given for a passive joint.
+/// The robot cannot play the gait, and [`Options::played`] is given.
 pub fn run(subject: &Subject, options: &Options, context: &mut Context) -> Result<Output, Error> {
     let Subject {
         file,
@@ -97,11 +97,6 @@ pub fn run(subject: &Subject, options: &Options, context: &mut Context) -> Resul
             file.name
         )));
     }
-    if options.played.is_some() && response.is_some() {
-        return Err(Error::refused(
-            "--played forecasts two servos, and a passive joint has none: leave it out; `swimmer twin` plays the gait with its spring",
-        ));
-    }
     let crossing = crossing_share(&file.swimmer.links, gait);
     let stroke = swim(model, gait, &Tolerance::default());
     let played = options
@@ -115,7 +110,10 @@ pub fn run(subject: &Subject, options: &Options, context: &mut Context) -> Resul
                 period: options.period_s,
                 knots: played.knots,
             };
-            forecast(model, gait, &played)
+            match response {
+                Some(response) => forecast_passive(model, gait, &played, response.passive),
+                None => forecast(model, gait, &played),
+            }
         })
         .transpose()?;
     let output = Output {

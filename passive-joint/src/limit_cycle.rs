@@ -84,6 +84,15 @@ impl<'a, G: Gait<f64>> LimitCycle<'a, G> {
         self.nodes.first().map_or(0.0, |node| node.angle)
     }
 
+    /// Shapes at the borders of the integration steps, in order; the last equals the first.
+    pub fn shapes(&self) -> impl Iterator<Item = Vector2<f64>> {
+        let driven = self.passive.driven().index();
+        self.nodes.iter().map(move |node| {
+            let angle = self.drive.at(node.u).phi[driven];
+            self.passive.shape(angle, node.angle)
+        })
+    }
+
     /// Floquet multiplier: factor of a small disturbance after one cycle.
     pub fn multiplier(&self) -> f64 {
         self.multiplier

@@ -1,7 +1,7 @@
 //! The ways of the joints through one cycle, one imperfection after the other.
 
 use gait_player::GaitTable;
-use gait_player::playback::Playback;
+use gait_player::playback::{Playback, PlayedPoint};
 use gait_player::servo::ServoMap;
 use gait_player::servo::plant::PlantParameters;
 use gait_player::table::check::Checker;
@@ -9,7 +9,7 @@ use nalgebra::Vector2;
 use swimmer_files::AnyGait;
 use swimmer_model::{Gait, InvalidSamples, Links, Model, Panels, Stroke, swim};
 
-use super::{ForecastError, Played, Servos, Verdict, gap, tolerance};
+use super::{ForecastError, Motion, Played, Servos, Verdict, gap, tolerance};
 use crate::path::Polyline;
 use crate::table::{knot, table};
 
@@ -31,10 +31,16 @@ pub(super) struct Ways {
 }
 
 impl Ways {
-    pub(super) fn new<G: Gait<f64> + ?Sized>(
+    pub(super) fn new<G, C, P>(
         gait: &G,
         played: &Played,
-    ) -> Result<Self, ForecastError> {
+        motion: &Motion<C, P>,
+    ) -> Result<Self, ForecastError>
+    where
+        G: Gait<f64> + ?Sized,
+        C: Fn(AnyGait) -> Result<AnyGait, ForecastError>,
+        P: Fn(&[PlayedPoint]) -> Result<Vec<Vector2<f64>>, ForecastError>,
+    {
         let knots = played.knots;
         let table = table(gait, knots)?;
         let knot = knot(gait, knots);
@@ -51,19 +57,22 @@ impl Ways {
             ..plant
         };
         let first = gait.at(0.0).phi;
-        let chain = |(map, plant)| chain(&table, played, first, map, plant);
-        let chains = [
-            (FINE, PlantParameters::IDEAL),
-            (map, pulsed),
-            (map, limited),
-            (map, plant),
-        ];
+        let chain = |map, plant| {
+            let path = path(&table, played, map, plant);
+            (motion.of_path)(&path).map(|shapes| chain(first, shapes))
+        };
+        let curve = |curve: AnyGait| (motion.of_curve)(curve);
         Ok(Self {
             curves: [
-                through((0..knots).map(designed))?,
-                through((0..knots).map(units))?,
+                curve(through((0..knots).map(designed))?)?,
+                curve(through((0..knots).map(units))?)?,
             ],
-            chains: chains.map(chain),
+            chains: [
+                chain(FINE, PlantParameters::IDEAL)?,
+                chain(map, pulsed)?,
+                chain(map, limited)?,
+                chain(map, plant)?,
+            ],
             table,
         })
     }
@@ -139,15 +148,13 @@ fn ranges(model: &Model<f64>, chain: &Polyline) -> [f64; 2] {
     ranges.map(|[low, high]| (0.5 * (high - low)).max(0.0))
 }
 
-/// One played cycle in steady state, seen from the designed gait's first shape: the joints go from there to where the played
-/// cycle begins and back where it ends. The way there and back cancels but for the change of frame, which is what it is for.
-fn chain(
+/// Path of the servos through one played cycle in steady state.
+fn path(
     table: &GaitTable,
     played: &Played,
-    first: Vector2<f64>,
     map: ServoMap,
     plant: PlantParameters,
-) -> Polyline {
+) -> Vec<PlayedPoint> {
     let playback = Playback {
         table,
         period_us: played.period_us(),
@@ -155,8 +162,14 @@ fn chain(
         limits: played.servos.limits(),
         plant,
     };
-    let mut vertices = vec![first];
-    playback.cycle(1, |point| vertices.push(point.angles.into()));
-    vertices.push(first);
-    Polyline::new(vertices)
+    let mut path = Vec::new();
+    playback.cycle(1, |point| path.push(point));
+    path
+}
+
+/// One played cycle seen from the designed gait's first shape: the joints go from there to where the played cycle begins and back
+/// where it ends. The way there and back cancels but for the change of frame, which is what it is for.
+fn chain(first: Vector2<f64>, shapes: Vec<Vector2<f64>>) -> Polyline {
+    let ends = std::iter::once(first);
+    Polyline::new(ends.clone().chain(shapes).chain(ends))
 }

@@ -3,15 +3,18 @@
 use std::ops::ControlFlow;
 use std::time::Duration;
 
+use forecast::{Played, Servos, forecast_passive};
 use gait_player::GaitTable;
 use host_link::Robot;
 use link_protocol::Joint;
 use passive_joint::{LimitCycle, PassiveJoint, Waveform};
-use swimmer_files::{AnyGait, GaitFile, JointName, PassiveFile, Spring, SwimmerFile};
+use swimmer_files::{AnyGait, GaitFile, JointName, PassiveFile, ServoFile, Spring, SwimmerFile};
 use swimmer_model::{Gait as _, Model, Tolerance, swim};
 use twin::{Twin, TwinConfig, TwinPort, WireSpeed};
 
 const PERIOD_S: f64 = 20.0;
+/// Largest relative difference of forecast and tank.
+const FORECAST: f64 = 1e-3;
 
 #[test]
 fn the_twin_swims_the_limit_cycle() {
@@ -32,7 +35,7 @@ fn the_twin_swims_the_limit_cycle() {
         let waveform = Waveform::new(vec![1.15, -0.12, 0.04]);
         let drive = waveform.driving(passive.driven());
         let cycle = LimitCycle::new(&model, &drive, passive).unwrap();
-        let forecast = swim(&model, &cycle, &Tolerance::default());
+        let designed = swim(&model, &cycle, &Tolerance::default());
 
         // By way of the file, which names the passive joint.
         let text = cycle.gait_file(512).to_text();
@@ -41,6 +44,7 @@ fn the_twin_swims_the_limit_cycle() {
         let gait = AnyGait::from_file(&read).unwrap();
         let table = GaitTable::from_fn(512, |u| gait.at(u).phi.into()).unwrap();
 
+        let servo = ServoFile::default();
         let config = TwinConfig::new(&file, 1);
         let config = if ideal {
             config.with_ideal_servos()
@@ -63,15 +67,34 @@ fn the_twin_swims_the_limit_cycle() {
             .unwrap();
         let starts = robot.port().device().cycle_starts().to_vec();
         let step = starts[2].pose.inverse() * starts[3].pose;
-        let share = step.position().norm() / forecast.displacement.norm();
+        let share = step.position().norm() / designed.displacement.norm();
         println!(
             "{joint:?}, ideal {ideal}: limit cycle {:.6} m, tank {:.6} m",
-            forecast.displacement.norm(),
+            designed.displacement.norm(),
             step.position().norm()
         );
         // A dead band of one degree takes part of a stroke of 66°.
         let tolerance = if ideal { 5e-3 } else { 2e-2 };
         assert!((share - 1.0).abs() < tolerance, "{joint:?}: {share}");
         assert!(step.theta.abs() < 2e-3, "{}", step.theta);
+        // The forecast of the played cycle knows table, ticks and dead band.
+        let played = Played {
+            servos: Servos {
+                file: ServoFile {
+                    dead_band: if ideal { 0.0 } else { servo.dead_band },
+                    max_rate: if ideal { 1e3 } else { servo.max_rate },
+                    ..servo
+                },
+                pulse_step_ns: 0,
+            },
+            period: PERIOD_S,
+            knots: 512,
+        };
+        let predicted = forecast_passive(&model, &gait, &played, passive).unwrap();
+        let (_, end) = predicted.ends().unwrap();
+        let share = step.position().norm() / end.displacement.norm();
+        println!("{joint:?}, ideal {ideal}: the tank swims {share:.6} of the forecast");
+        assert!((share - 1.0).abs() < FORECAST, "{joint:?}: {share}");
+        assert!((step.theta - end.rotation).abs() < 1e-4);
     }
 }
