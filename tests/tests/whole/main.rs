@@ -8,4 +8,5 @@ mod real_anchors;
 mod real_recordings;
 mod robot_clock;
 mod traced;
+mod unequal;
 mod whole_loop;
