@@ -24,21 +24,72 @@ const OF_THE_README: [(&str, &str); 4] = [
 ];
 const ANIMATION: &str = "cycle.gif";
 
+/// Commands of the pictures of other swimmers, in a folder with the files of that page.
+const OF_OTHER_SWIMMERS: [(&str, &str); 8] = [
+    (
+        "optimize displacement --swimmer uneven.toml --max-angle 1.2 -o uneven.gait",
+        "",
+    ),
+    (
+        "height-map --swimmer uneven.toml --gait uneven.gait -o uneven.png",
+        "uneven.png",
+    ),
+    (
+        "optimize displacement --swimmer perfect-fluid --max-angle 1.5 -o perfect.gait",
+        "",
+    ),
+    (
+        "simulate --swimmer perfect-fluid --gait perfect.gait --cycles 2 --picture perfect-fluid.png",
+        "perfect-fluid.png",
+    ),
+    (
+        "simulate --swimmer kinematic-snake --gait off-centre.gait --cycles 3 --picture kinematic-snake.png",
+        "kinematic-snake.png",
+    ),
+    (
+        "optimize passive --swimmer elastic-tail --max-angle 1 -o tail.gait",
+        "",
+    ),
+    (
+        "simulate --swimmer purcell --gait tail.gait --cycles 6 --picture elastic-tail.png",
+        "elastic-tail.png",
+    ),
+    (
+        "height-map --swimmer purcell --gait tail.gait -o elastic-tail-map.png",
+        "elastic-tail-map.png",
+    ),
+];
+
 /// Size limit of an animation on a page that loads at once.
 const LARGEST_ANIMATION: usize = 400_000;
 
 #[test]
 fn pictures_of_the_readme_are_what_is_drawn_today() {
     let folder = tempfile::tempdir().unwrap();
+    drawn_today(folder.path(), &OF_THE_README);
+}
+
+#[test]
+fn pictures_of_other_swimmers_are_what_is_drawn_today() {
+    let folder = tempfile::tempdir().unwrap();
+    let inputs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/how-to/other-swimmers.in");
+    for name in ["uneven.toml", "off-centre.gait"] {
+        fs::copy(inputs.join(name), folder.path().join(name)).unwrap();
+    }
+    drawn_today(folder.path(), &OF_OTHER_SWIMMERS);
+}
+
+/// Runs the commands in a folder, and compares each picture with that under `docs/pictures`.
+fn drawn_today(folder: &Path, commands: &[(&str, &str)]) {
     let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/pictures");
     let overwrite = std::env::var("SWIMMER_PICTURES").is_ok_and(|word| word == "overwrite");
     let mut stale = Vec::new();
-    for (line, picture) in OF_THE_README {
-        typed(folder.path(), line).with_status(0);
+    for &(line, picture) in commands {
+        typed(folder, line).with_status(0);
         if picture.is_empty() {
             continue;
         }
-        let drawn = fs::read(folder.path().join(picture)).unwrap();
+        let drawn = fs::read(folder.join(picture)).unwrap();
         if picture == ANIMATION {
             assert!(drawn.len() < LARGEST_ANIMATION, "{} bytes", drawn.len());
         }
