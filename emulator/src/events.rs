@@ -42,7 +42,7 @@ impl Period {
         [self.front, self.back]
     }
 
-    /// Pulses of front and back servo \[µs\]; 0 if the pulses are off.
+    /// Pulses of front and back servo \[µs\]; 0 if they are off.
     pub fn pulses_us(&self) -> [f64; 2] {
         [self.front, self.back].map(|compare| f64::from(compare) * self.step_us())
     }
@@ -67,9 +67,9 @@ impl Period {
         self.tick as f64 / 125e3
     }
 
-    /// Returns `true` if both servos receive pulses.
+    /// Returns `true` if a servo receives pulses.
     pub fn powered(&self) -> bool {
-        self.front > 0 && self.back > 0
+        self.front > 0 || self.back > 0
     }
 
     fn step_us(&self) -> f64 {

@@ -34,6 +34,7 @@
 //!   session resumes nothing.
 //! - **active** and **staging** table: the table that plays, and the table that an upload fills. A commit checks the staging
 //!   table and swaps: at once if nothing plays, otherwise at the end of the cycle, by a ramp.
+//! - **passive joint**: a spring holds it in place of a servo. Its output stays low in every state.
 //! - **clamp**: the last check before the servos, and the only place that limits angle, rate and pulse.
 //!
 //! # Order of severity
@@ -69,7 +70,7 @@ use crate::storage::{MAX_SETTINGS, Storage};
 use crate::{ShortStarts, TICK_US};
 use battery::Battery;
 use bench::Bench;
-use link_protocol::{Configuration, Counters, Decoder, StopCause};
+use link_protocol::{Configuration, Counters, Decoder, Joint, StopCause};
 use outbox::Outbox;
 use persist::Persist;
 use resets::Resets;
@@ -138,6 +139,7 @@ impl Brain {
             limits: firmware_limits,
             configuration,
             servos,
+            passive,
             buffer,
             boot,
         } = config;
@@ -147,6 +149,7 @@ impl Brain {
             at_bench: servos,
             ranges: [None; 2],
             key: None,
+            passive,
         };
         let model =
             settings::check_configuration(&configuration, &firmware_limits).unwrap_or_else(|_| {
@@ -391,7 +394,8 @@ impl Brain {
         self.bench.leaves(now_us) && self.persist.all_stored()
     }
 
-    /// Clamps the set-point, advances the odometer and returns the pulses, ns.
+    /// Clamps the set-point, advances the odometer and returns the pulses, ns. A passive joint follows the table in the odometer
+    /// and gets no pulse.
     fn command(&mut self, wanted: [f32; 2]) -> [u32; 2] {
         let windows = [0, 1].map(|joint| self.settings.window(joint, &self.limits));
         let clamped = self
@@ -403,7 +407,12 @@ impl Brain {
         let commanded = clamped.cut.unwrap_or(wanted);
         self.odometer.step(&self.model, self.commanded, commanded);
         self.commanded = commanded;
-        clamped.pulses_ns
+        let [front, back] = clamped.pulses_ns;
+        match self.settings.passive {
+            None => [front, back],
+            Some(Joint::Front) => [0, back],
+            Some(Joint::Back) => [front, 0],
+        }
     }
 
     /// Current value of [`Output::kept`]. It contains an e-stop before the reply to that e-stop is sent.

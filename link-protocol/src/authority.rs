@@ -145,6 +145,7 @@ impl Request {
             Self::Configure(_)
             | Self::SetServo { .. }
             | Self::SetPulseRange { .. }
+            | Self::SetPassive(_)
             | Self::SetKey(_) => {
                 if widens() {
                     RequestClass::Widening
@@ -182,6 +183,8 @@ pub struct SettingsHeld {
     pub at_bench: [ServoSettings; 2],
     /// Pulse ranges in force.
     pub ranges: [PulseRange; 2],
+    /// Joint without a servo.
+    pub passive: Option<Joint>,
     /// A key is set.
     pub has_key: bool,
 }
@@ -209,6 +212,8 @@ impl SettingsHeld {
                 let held = self.ranges[joint.index()];
                 range.shortest_ns < held.shortest_ns || range.longest_ns > held.longest_ns
             }
+            // A joint that was passive is driven again.
+            Request::SetPassive(joint) => self.passive.is_some() && *joint != self.passive,
             Request::SetKey(key) => key.is_some() && !self.has_key,
             _ => false,
         }

@@ -76,16 +76,22 @@ pub struct PulseRange {
 }
 
 /// Hash of the settings on which a host's checks of a play depend: CRC-32C over the postcard bytes of the configuration, the
-/// maps of front and back servo and their pulse ranges, in this order. [`crate::Request::PulseRange`] reports the range in
-/// force, which is the firmware's window if no range is set.
+/// maps of front and back servo and their pulse ranges, in this order, and of the passive joint if there is one.
+/// [`crate::Request::PulseRange`] reports the range in force, which is the firmware's window if no range is set.
 pub fn settings_crc32(
     configuration: &Configuration,
     servos: &[ServoSettings; 2],
     ranges: &[PulseRange; 2],
+    passive: Option<Joint>,
 ) -> u32 {
     let mut bytes = [0; 128];
-    // At most 33 bytes, twice 13 and twice 10.
-    let len = postcard::to_slice(&(configuration, servos, ranges), &mut bytes)
+    // At most 33 bytes, twice 13, twice 10 and 1.
+    let mut len = postcard::to_slice(&(configuration, servos, ranges), &mut bytes)
         .map_or(0, |written| written.len());
+    // The hash of a robot with two servos is that of earlier firmware.
+    if let (Some(joint), Some(last)) = (passive, bytes.get_mut(len)) {
+        *last = joint as u8;
+        len += 1;
+    }
     crate::crc32c(&bytes[..len])
 }

@@ -95,6 +95,9 @@ pub enum Request {
     /// that is endless: after the present cycle). Both tables start at the same knot. Reply: [`crate::Reply::Table`] once it is
     /// scheduled.
     Follow(Follow),
+    /// Declares the joint that a spring holds in place of a servo: its output stays low from then on, whatever plays. `None`:
+    /// both joints have servos. To drive a passive joint again requires presence. [`crate::Flags::passive`] reports the joint.
+    SetPassive(Option<Joint>),
 }
 
 impl Request {

@@ -1,5 +1,6 @@
 //! Telemetry, keep-alives and clock messages.
 
+use crate::Joint;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
@@ -71,10 +72,24 @@ impl Flags {
     pub const PRESENT: Self = Self(512);
     /// Arming is locked because of repeated short starts, as in a servo's brown-out; set together with [`Flags::RESET_LOOP`].
     pub const SHORT_STARTS: Self = Self(1024);
+    /// The front joint has a spring in place of a servo: its output stays low.
+    pub const FRONT_PASSIVE: Self = Self(2048);
+    /// The back joint has a spring in place of a servo: its output stays low.
+    pub const BACK_PASSIVE: Self = Self(4096);
 
     /// Returns true if all bits of `other` are set.
     pub fn contains(self, other: Self) -> bool {
         self.0 & other.0 == other.0
+    }
+
+    /// Joint with a spring in place of a servo. Returns `None` if both joints have servos.
+    pub fn passive(self) -> Option<Joint> {
+        [
+            (Self::FRONT_PASSIVE, Joint::Front),
+            (Self::BACK_PASSIVE, Joint::Back),
+        ]
+        .into_iter()
+        .find_map(|(flag, joint)| self.contains(flag).then_some(joint))
     }
 
     /// Sets the bits of `other` if `condition` is true.
@@ -107,7 +122,7 @@ pub struct Telemetry {
     pub phase: u16,
     /// Commanded angles φ₁, φ₂ in 1e-4 rad.
     pub setpoint: [i16; 2],
-    /// Pulses, ns; 0 if they are off.
+    /// Pulses, ns; 0 if they are off, and at a passive joint.
     pub pulse_ns: [u32; 2],
     /// Battery voltage, mV; `None` if it is not measured.
     pub battery_mv: Option<u16>,

@@ -208,6 +208,14 @@ fn read_step(
             FileError::Read { .. } => error(place, cause.to_string()),
             other => other,
         })?;
+        if let Some(spring) = file.passive {
+            let problem = format!(
+                "{} leaves the {} joint to a spring; a playlist drives both joints",
+                beside.display(),
+                spring.joint
+            );
+            return Err(error(place, problem));
+        }
         curve = AnyGait::from_file(&file)
             .map_err(|cause| error(place, format!("{}: {cause}", beside.display())))?
             .reversed_if(*reversed);
@@ -247,6 +255,12 @@ mod tests {
         GaitFile::sampled(&AnyGait::circle(1.0), 64)
             .save(&folder.path().join("one.gait"))
             .unwrap();
+        GaitFile {
+            passive: Some("back relaxation=0.35".parse().unwrap()),
+            ..GaitFile::sampled(&AnyGait::circle(1.0), 64)
+        }
+        .save(&folder.path().join("spring.gait"))
+        .unwrap();
         folder
     }
 
@@ -294,6 +308,12 @@ mod tests {
                 "start and end at one shape",
             ),
             ("cycles = 3", "cycle = 3", (7, 1), "unknown field `cycle`"),
+            (
+                "one.gait:cw",
+                "spring.gait",
+                (11, 8),
+                "leaves the back joint to a spring",
+            ),
         ] {
             let text = TEXT.replacen(from, to, 1);
             assert_ne!(text, TEXT);

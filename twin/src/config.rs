@@ -142,6 +142,7 @@ impl TwinConfig {
             limits: self.limits,
             configuration: self.belief,
             servos: self.servos,
+            passive: self.passive.map(|passive| passive.joint),
             buffer: 2048,
             boot: Boot {
                 reset_reason: self.reset_reason,

@@ -591,6 +591,7 @@ fn brain(events: &Events, session: u16) -> Brain {
         max_rate: limits.max_rate,
         ..config.configuration
     });
+    config.passive = events.passive_at_start;
     for (place, live) in config.servos.iter_mut().zip(events.servos) {
         if let Some(settings) = live {
             *place = settings;

@@ -23,8 +23,8 @@ pub struct Servos {
     maps: [ServoMap; 2],
     plant: PlantParameters,
     shafts: [ServoPlant; 2],
-    /// Angles commanded by the last pulses, rad. Without pulses (`None`) there is no torque, and the gears hold.
-    command: Option<[f64; 2]>,
+    /// Angles commanded by the last pulses, rad. Without a pulse (`None`) a servo has no torque, and its gears hold.
+    command: [Option<f64>; 2],
 }
 
 impl Servos {
@@ -34,7 +34,7 @@ impl Servos {
             maps,
             plant,
             shafts: [ServoPlant::new(0.0); 2],
-            command: None,
+            command: [None; 2],
         }
     }
 
@@ -43,28 +43,35 @@ impl Servos {
         self.shafts.map(|shaft| shaft.angle)
     }
 
-    /// Sets new pulses, ns, or switches them off.
+    /// Sets new pulses, ns, or switches them off. A pulse of 0 ns is none.
     pub fn set_pulses(&mut self, pulses_ns: Option<[u32; 2]>) {
-        self.command = pulses_ns.map(|pulses| {
-            std::array::from_fn(|joint| self.plant.command(&self.maps[joint], pulses[joint]))
+        let pulses_ns = pulses_ns.unwrap_or_default();
+        self.command = std::array::from_fn(|joint| {
+            let pulse_ns = pulses_ns[joint];
+            (pulse_ns > 0).then(|| self.plant.command(&self.maps[joint], pulse_ns))
         });
     }
 
     /// Advances by `seconds`. `visit` receives each vertex of the path and the time since the vertex before it \[s\]; between two of
     /// them both angles change at constant rates.
     pub fn advance(&mut self, seconds: f64, mut visit: impl FnMut(Vector2<f64>, f64)) {
-        let Some(command) = self.command else {
+        let command = self.command;
+        if command == [None; 2] {
             visit(Vector2::from(self.angles()), seconds);
             return;
-        };
+        }
         let rests: [f64; 2] = std::array::from_fn(|joint| {
-            self.shafts[joint].time_to_rest(&self.plant, command[joint])
+            command[joint].map_or(0.0, |command| {
+                self.shafts[joint].time_to_rest(&self.plant, command)
+            })
         });
         let mut now = 0.0;
         for vertex in [rests[0].min(rests[1]), rests[0].max(rests[1]), seconds] {
             if vertex > now && vertex <= seconds {
                 for (shaft, command) in self.shafts.iter_mut().zip(command) {
-                    shaft.advance(&self.plant, command, vertex - now);
+                    if let Some(command) = command {
+                        shaft.advance(&self.plant, command, vertex - now);
+                    }
                 }
                 visit(Vector2::from(self.angles()), vertex - now);
                 now = vertex;
@@ -98,6 +105,18 @@ mod tests {
             (path[1] - Vector2::new(0.01, -0.04)).norm() < 2e-5,
             "{path:?}"
         );
+    }
+
+    #[test]
+    fn a_pulse_of_zero_is_none() {
+        let map = ServoMap::ROBOT;
+        let mut servos = Servos::new([map; 2], PlantParameters::IDEAL);
+        servos.set_pulses(Some([map.pulse_ns(0.5), map.pulse_ns(-0.3)]));
+        servos.advance(0.02, |_, _| {});
+        servos.set_pulses(Some([map.pulse_ns(0.7), 0]));
+        servos.advance(0.02, |_, _| {});
+        let [front, back] = servos.angles();
+        assert!((front - 0.7).abs() < 2e-5 && (back + 0.3).abs() < 2e-5);
     }
 
     #[test]

@@ -13,6 +13,7 @@ mod key;
 mod log;
 mod motion;
 mod outputs;
+mod passive;
 mod playing;
 mod playlist;
 mod port;
@@ -105,7 +106,7 @@ enum Action {
 
 #[derive(Debug, clap::Args)]
 struct Configure {
-    /// purcell, robot, robot-slender or a swimmer file
+    /// A preset that `swimmer swimmers` lists, or a swimmer file
     #[arg(long, value_name = "SWIMMER")]
     swimmer: String,
     /// Largest joint angle; may tighten the robot's own limit, never loosen it

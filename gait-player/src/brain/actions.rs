@@ -44,6 +44,12 @@ impl Brain {
                 self.only_idle()?;
                 self.set_pulse_range(*joint, *range)
             }
+            Request::SetPassive(joint) => {
+                self.only_idle()?;
+                self.settings.passive = *joint;
+                self.persist.settings_changed();
+                DONE
+            }
             Request::Trim { joint, trim } => self.trim(*joint, *trim),
             Request::Begin(begin) => {
                 self.only_idle()?;

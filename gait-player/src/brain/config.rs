@@ -3,7 +3,8 @@
 use crate::{Limits, ShortStarts, servo::ServoMap};
 use heapless::String;
 use link_protocol::{
-    Board, Configuration, FirmwareVersion, ResetReason, ServoSettings, StateName, TangentialDrag,
+    Board, Configuration, FirmwareVersion, Joint, ResetReason, ServoSettings, StateName,
+    TangentialDrag,
 };
 
 /// Configuration that the shell passes at the start.
@@ -17,6 +18,8 @@ pub struct BrainConfig {
     pub configuration: Configuration,
     /// Servo maps until others are set.
     pub servos: [ServoSettings; 2],
+    /// Joint without a servo, until another is set.
+    pub passive: Option<Joint>,
     /// Capacity of the receive buffer, bytes.
     pub buffer: u16,
     /// State of the robot after the start.
@@ -85,7 +88,7 @@ pub struct Inputs {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(clippy::struct_excessive_bools)] // each is a wire or a task of the shell
 pub struct Output {
-    /// Pulses of both servos for the next period, ns. `None` switches them off.
+    /// Pulses of both servos for the next period, ns; 0 at a passive joint, whose output stays low. `None` switches them off.
     pub pulses_ns: Option<[u32; 2]>,
     /// Commanded angles φ₁, φ₂, rad (kept while pulses are off).
     pub setpoint: [f32; 2],
@@ -158,6 +161,7 @@ impl BrainConfig {
             limits: Limits::ROBOT,
             configuration,
             servos: [servo; 2],
+            passive: None,
             buffer: 2048,
             boot,
         }

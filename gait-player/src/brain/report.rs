@@ -5,7 +5,7 @@ use super::state::State;
 use super::{Brain, Transport};
 use crate::TICK_US;
 use link_protocol::{
-    ANGLE_UNIT_RAD, Checked, Counters, DecodeCounters, Flags, Header, HelloReply, MAX_KNOTS,
+    ANGLE_UNIT_RAD, Checked, Counters, DecodeCounters, Flags, Header, HelloReply, Joint, MAX_KNOTS,
     Message, PROTOCOL_CURRENT, PROTOCOL_MIN, RobotLimits, SCHEMA_KEY, StateName, Status, TableInfo,
     Telemetry,
 };
@@ -122,6 +122,14 @@ impl Brain {
                 self.bench.open(now_us) || self.session.transport() == Some(Transport::Usb),
             )
             .with(Flags::SHORT_STARTS, self.resets.locked_by_starts())
+            .with(
+                Flags::FRONT_PASSIVE,
+                self.settings.passive == Some(Joint::Front),
+            )
+            .with(
+                Flags::BACK_PASSIVE,
+                self.settings.passive == Some(Joint::Back),
+            )
     }
 
     /// Finished cycles, requested cycles, and fraction of the present cycle in 2⁻¹⁶.

@@ -211,6 +211,7 @@ impl Brain {
             servos: self.settings.servos,
             at_bench: self.settings.at_bench,
             ranges: self.ranges(),
+            passive: self.settings.passive,
             has_key: self.settings.key.is_some(),
         }
     }
@@ -221,6 +222,7 @@ impl Brain {
             &self.settings.configuration,
             &self.settings.servos,
             &self.ranges(),
+            self.settings.passive,
         )
     }
 

@@ -4,7 +4,7 @@
 use crate::storage::MAX_SETTINGS;
 use crate::{Limits, servo::ServoMap};
 use link_protocol::{
-    Configuration, Key, PulseRange, Refusal, Request, ServoSettings, TangentialDrag,
+    Configuration, Joint, Key, PulseRange, Refusal, Request, ServoSettings, TangentialDrag,
 };
 use serde::{Deserialize, Serialize};
 use swimmer_model::{Links, Model, Swimmer};
@@ -15,6 +15,10 @@ const MAX_TRIM: i16 = 5_000;
 const MAX_TO_NEUTRAL_MS: f32 = 1_000.0;
 /// Smallest angle that a servo's end stops must leave on both sides, rad.
 const MIN_REACH: f32 = 1e-2;
+/// First of the two bytes at the end of a record with a passive joint; the second is the joint.
+const HAS_PASSIVE: u8 = 1;
+const FRONT: u8 = Joint::Front as u8;
+const BACK: u8 = Joint::Back as u8;
 
 /// Record of the settings.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -26,22 +30,41 @@ pub(crate) struct Settings {
     /// Pulse ranges of the servos. `None` stands for the firmware's window.
     pub(crate) ranges: [Option<PulseRange>; 2],
     pub(crate) key: Option<Key>,
+    /// Joint without a servo. In the record it follows the rest, and only if there is one: the record of a robot with two
+    /// servos is that of earlier firmware.
+    #[serde(skip)]
+    pub(crate) passive: Option<Joint>,
 }
 
 impl Settings {
     /// Encodes the record for storage.
+    #[cold] // not in a tick: memory.x leaves it in flash
     pub(crate) fn encode<'a>(&self, bytes: &'a mut [u8; MAX_SETTINGS]) -> Option<&'a mut [u8]> {
-        postcard::to_slice(self, bytes).ok()
+        let mut len = postcard::to_slice(self, bytes).ok()?.len();
+        if let Some(joint) = self.passive {
+            let tail = bytes.get_mut(len..)?.first_chunk_mut()?;
+            *tail = [HAS_PASSIVE, joint as u8];
+            len += tail.len();
+        }
+        bytes.get_mut(..len)
     }
 
     /// Key of a stored record, even if the rest is invalid: changed limits must not remove the protection.
+    #[cold]
     pub(crate) fn stored_key(bytes: &[u8]) -> Option<Key> {
         postcard::from_bytes::<Self>(bytes).ok()?.key
     }
 
     /// Decodes a record. Returns `None` if it is invalid under these limits.
+    #[cold]
     pub(crate) fn decode(bytes: &[u8], limits: &Limits) -> Option<Self> {
-        let (settings, rest) = postcard::take_from_bytes::<Self>(bytes).ok()?;
+        let (mut settings, rest) = postcard::take_from_bytes::<Self>(bytes).ok()?;
+        settings.passive = match *rest {
+            [] => None,
+            [HAS_PASSIVE, FRONT] => Some(Joint::Front),
+            [HAS_PASSIVE, BACK] => Some(Joint::Back),
+            _ => return None,
+        };
         check_configuration(&settings.configuration, limits).ok()?;
         settings
             .servos
@@ -50,7 +73,7 @@ impl Settings {
             .try_for_each(|servo| check_servo(servo, limits))
             .ok()?;
         settings.reach(limits).ok()?;
-        rest.is_empty().then_some(settings)
+        Some(settings)
     }
 
     /// Records the servo maps after a request with presence; later changes are measured from them.
@@ -104,6 +127,7 @@ impl Settings {
 }
 
 /// Validates a configuration and prepares its model.
+#[cold] // at the start, and while Stopped
 pub(crate) fn check_configuration(
     wanted: &Configuration,
     limits: &Limits,
@@ -193,6 +217,7 @@ mod tests {
             at_bench: config.servos,
             ranges: [None; 2],
             key: None,
+            passive: None,
         };
         (settings, config.limits)
     }
@@ -203,9 +228,11 @@ mod tests {
             widths in [proptest::option::of((1_000_u32..50_000, 1_000_u32..50_000)), proptest::option::of((1_000_u32..50_000, 1_000_u32..50_000))],
             key in proptest::option::of(any::<[u8; Key::LEN]>()),
             trim in -MAX_TRIM..=MAX_TRIM,
+            passive in prop_oneof![Just(None), Just(Some(Joint::Front)), Just(Some(Joint::Back))],
         ) {
             let (mut settings, limits) = as_built();
             settings.key = key.map(Key);
+            settings.passive = passive;
             settings.at_bench[1].trim = trim;
             for (joint, width) in widths.into_iter().enumerate() {
                 let neutral_ns = settings.maps()[joint].pulse_ns(0.0);
@@ -241,11 +268,43 @@ mod tests {
         settings.at_bench = [servo; 2];
         settings.ranges = [Some(range); 2];
         settings.key = Some(Key([0xFF; Key::LEN]));
+        settings.passive = Some(Joint::Back);
         let mut bytes = [0; MAX_SETTINGS];
         assert_eq!(
             settings.encode(&mut bytes).map(|record| record.len()),
-            Some(124)
+            Some(126)
         );
+    }
+
+    /// Record of firmware that knows no passive joint: of the paper's robot with a key.
+    const RECORD_OF_1_0: [u8; 88] = [
+        0x73, 0x68, 0x91, 0x3D, 0xBA, 0x49, 0x0C, 0x3E, 0xBA, 0x49, 0x0C, 0x3E, 0xA2, 0x45, 0x66,
+        0x40, 0x00, 0x42, 0x60, 0x91, 0x40, 0xBB, 0xB8, 0x8D, 0x3D, 0x33, 0x33, 0x33, 0x40, 0x00,
+        0x00, 0x60, 0x40, 0xE0, 0xC6, 0x5B, 0xF7, 0x75, 0xE0, 0x3C, 0x00, 0x00, 0xE0, 0xC6, 0x5B,
+        0xF7, 0x75, 0xE0, 0x3C, 0x00, 0x00, 0xE0, 0xC6, 0x5B, 0xF7, 0x75, 0xE0, 0x3C, 0x00, 0x00,
+        0xE0, 0xC6, 0x5B, 0xF7, 0x75, 0xE0, 0x3C, 0x00, 0x00, 0x00, 0x00, 0x01, 0x6E, 0x6F, 0x74,
+        0x20, 0x61, 0x20, 0x73, 0x65, 0x63, 0x72, 0x65, 0x74, 0x20, 0x6B, 0x65, 0x79,
+    ];
+
+    #[test]
+    fn a_record_of_earlier_firmware_is_read_and_written_as_it_was() {
+        let (mut settings, limits) = as_built();
+        settings.key = Some(Key(*b"not a secret key"));
+        let mut bytes = [0; MAX_SETTINGS];
+        assert_eq!(settings.encode(&mut bytes).unwrap(), RECORD_OF_1_0);
+        assert_eq!(Settings::decode(&RECORD_OF_1_0, &limits), Some(settings));
+    }
+
+    /// Earlier firmware refuses the record of a passive joint, whose output it would drive, and keeps the key.
+    #[test]
+    fn the_record_of_a_passive_joint_is_that_record_and_its_joint() {
+        let (mut settings, _) = as_built();
+        settings.key = Some(Key(*b"not a secret key"));
+        settings.passive = Some(Joint::Back);
+        let mut bytes = [0; MAX_SETTINGS];
+        let record = settings.encode(&mut bytes).unwrap();
+        assert_eq!(*record, [&RECORD_OF_1_0[..], &[1, 1]].concat());
+        assert_eq!(Settings::stored_key(record), settings.key);
     }
 
     #[test]

@@ -6,6 +6,7 @@ mod failsafe;
 mod follow;
 mod key;
 mod latched;
+mod passive;
 mod play;
 mod playback;
 mod presence;

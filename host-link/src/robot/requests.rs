@@ -256,6 +256,16 @@ impl<P: Port> Robot<P> {
         }
     }
 
+    /// Declares the joint that has a spring in place of a servo, or, with `None`, that both joints have servos; only while the
+    /// robot is stopped. The output of a passive joint stays low.
+    ///
+    /// # Errors
+    /// [`LinkError::Refused`] if a passive joint shall be driven again and nobody is present, or if the firmware is older than
+    /// this request; and errors of the link.
+    pub fn set_passive(&mut self, joint: Option<Joint>) -> Result<(), LinkError> {
+        self.order(Request::SetPassive(joint), "setting the passive joint")
+    }
+
     /// Sets the pulse range of a servo; only while the robot is stopped. Gaits beyond it are refused.
     ///
     /// # Errors

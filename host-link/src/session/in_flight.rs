@@ -123,6 +123,7 @@ pub(super) fn describe(request: &Request) -> &'static str {
         Request::Bench => "asking for presence and short starts",
         Request::PulseRange(_) => "asking for a servo's pulse range",
         Request::SetPulseRange { .. } => "setting a servo's pulse range",
+        Request::SetPassive(_) => "setting the passive joint",
         Request::ClearEStop { .. } => "clearing the e-stop",
         Request::EnterBootLoader => "asking for the boot loader",
     }

@@ -70,6 +70,7 @@ impl Robot {
             limits: Limits::ROBOT,
             configuration: configuration(2.8),
             servos: [servo; 2],
+            passive: None,
             buffer: 2048,
             boot: Boot::power_on(nonce, 100),
         });

@@ -52,7 +52,7 @@ fn table() -> String {
             mark(needs.wear)
         );
     }
-    assert_eq!(listed.len(), 26, "a request is in no sample: {listed:?}");
+    assert_eq!(listed.len(), 27, "a request is in no sample: {listed:?}");
     text
 }
 
@@ -107,6 +107,7 @@ fn held() -> SettingsHeld {
             shortest_ns: 1_400_000,
             longest_ns: 1_600_000,
         }; 2],
+        passive: None,
         has_key: false,
     }
 }
@@ -178,13 +179,36 @@ fn other_directions_wider_ranges_and_first_keys_are_wider() {
     assert!(!held.is_widened_by(&key));
 }
 
+/// Removing a servo is free, adding one is not.
+#[test]
+fn to_drive_a_passive_joint_again_is_wider() {
+    let mut held = held();
+    let set = Request::SetPassive;
+    assert!(!held.is_widened_by(&set(None)) && !held.is_widened_by(&set(Some(Joint::Back))));
+    held.passive = Some(Joint::Back);
+    assert!(!held.is_widened_by(&set(Some(Joint::Back))));
+    assert!(held.is_widened_by(&set(None)) && held.is_widened_by(&set(Some(Joint::Front))));
+}
+
+/// The hash of a robot with two servos, as computed by firmware that knows no passive joint.
+#[test]
+fn the_hash_without_a_passive_joint_is_that_of_earlier_firmware() {
+    let held = held();
+    let mut bytes = [0; 128];
+    let settings = (held.configuration, held.servos, held.ranges);
+    let bytes = postcard::to_slice(&settings, &mut bytes).unwrap();
+    let hash = settings_crc32(&held.configuration, &held.servos, &held.ranges, None);
+    assert_eq!(hash, crc32c(bytes));
+}
+
 /// Each value of the settings affects the hash.
 #[test]
 fn the_hash_of_the_settings_covers_each_of_them() {
     let held = held();
-    let hash = |of: &SettingsHeld| settings_crc32(&of.configuration, &of.servos, &of.ranges);
+    let hash =
+        |of: &SettingsHeld| settings_crc32(&of.configuration, &of.servos, &of.ranges, of.passive);
     let mut hashes = BTreeSet::from([hash(&held)]);
-    let changes: [fn(&mut SettingsHeld); 14] = [
+    let changes: [fn(&mut SettingsHeld); 16] = [
         |of| of.configuration.middle_m += 1e-3,
         |of| of.configuration.front_m += 1e-3,
         |of| of.configuration.back_m += 1e-3,
@@ -199,11 +223,13 @@ fn the_hash_of_the_settings_covers_each_of_them() {
         |of| of.servos[1].trim = 1,
         |of| of.ranges[0].shortest_ns += 1,
         |of| of.ranges[1].longest_ns += 1,
+        |of| of.passive = Some(Joint::Front),
+        |of| of.passive = Some(Joint::Back),
     ];
     for change in changes {
         let mut changed = held;
         change(&mut changed);
         hashes.insert(hash(&changed));
     }
-    assert_eq!(hashes.len(), 15);
+    assert_eq!(hashes.len(), 17);
 }

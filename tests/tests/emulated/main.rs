@@ -18,6 +18,7 @@ mod haste;
 mod load;
 mod log;
 mod noise;
+mod passive;
 mod presence;
 mod promise;
 mod radio;

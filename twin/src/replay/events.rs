@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use gait_player::TICK_US;
 use link_protocol::{
-    Configuration, Direction, HelloReply, Joint, Message, Received, Refusal, Reply, Request,
+    Configuration, Direction, Flags, HelloReply, Joint, Message, Received, Refusal, Reply, Request,
     ServoSettings, StateName, StopCause, Telemetry,
 };
 use swimmer_files::LinkFrame;
@@ -82,6 +82,7 @@ pub(super) struct Events {
     pub(super) servos: [Option<ServoSettings>; 2],
     pub(super) battery_at_start: Option<u16>,
     pub(super) state_at_start: StateName,
+    pub(super) passive_at_start: Option<Joint>,
     pub(super) table_at_start: Option<u32>,
     /// First ticks of the windows that are not determined by the robot's counts, in order.
     pub(super) uncertain: Vec<u64>,
@@ -112,9 +113,11 @@ impl Events {
         // Telemetry before the greeting belongs to another session.
         let messages: Vec<Telemetry> = telemetry(&read, greeting).copied().collect();
         let first = messages.first().ok_or(ReplayError::NoTelemetry)?;
-        let (state, setpoint) = found(&read, greeting).unwrap_or((first.state, first.setpoint));
-        if !matches!(state, StateName::Stopped | StateName::EStopped) || setpoint != [0; 2] {
-            return Err(ReplayError::NotAtRest(state));
+        let start = AtStart::of(&read, greeting).unwrap_or_else(|| first.into());
+        if !matches!(start.state, StateName::Stopped | StateName::EStopped)
+            || start.setpoint != [0; 2]
+        {
+            return Err(ReplayError::NotAtRest(start.state));
         }
         let clock = Ticks::new(first.robot_us, read.iter().map(|read| read.at_us));
         let telemetry: BTreeMap<u64, Telemetry> = messages
@@ -140,7 +143,8 @@ impl Events {
             configuration: facts.configuration,
             servos: facts.servos,
             battery_at_start: first.battery_mv,
-            state_at_start: state,
+            state_at_start: start.state,
+            passive_at_start: start.flags.passive(),
             table_at_start: facts.table,
             telemetry,
         })
@@ -204,17 +208,39 @@ fn check_span(telemetry: &BTreeMap<u64, Telemetry>, last_tick: u64) -> Result<()
     }
 }
 
-/// State and set-point of the robot at the start of the log: its first report after the greeting, requested or not.
-fn found(read: &[Read<'_>], greeting: usize) -> Option<(StateName, [i16; 2])> {
-    let mut heard = read
-        .iter()
-        .skip(greeting)
-        .filter(|read| read.frame.direction == Direction::ToHost);
-    heard.find_map(|read| match &read.received.message {
-        Ok(Message::Reply(Reply::Status(status))) => Some((status.state, status.setpoint)),
-        Ok(Message::Telemetry(telemetry)) => Some((telemetry.state, telemetry.setpoint)),
-        _ => None,
-    })
+/// Report of the robot at the start of the log: its first after the greeting, requested or not.
+struct AtStart {
+    state: StateName,
+    setpoint: [i16; 2],
+    flags: Flags,
+}
+
+impl From<&Telemetry> for AtStart {
+    fn from(telemetry: &Telemetry) -> Self {
+        Self {
+            state: telemetry.state,
+            setpoint: telemetry.setpoint,
+            flags: telemetry.flags,
+        }
+    }
+}
+
+impl AtStart {
+    fn of(read: &[Read<'_>], greeting: usize) -> Option<Self> {
+        let mut received = read
+            .iter()
+            .skip(greeting)
+            .filter(|read| read.frame.direction == Direction::ToHost);
+        received.find_map(|read| match &read.received.message {
+            Ok(Message::Reply(Reply::Status(status))) => Some(Self {
+                state: status.state,
+                setpoint: status.setpoint,
+                flags: status.flags,
+            }),
+            Ok(Message::Telemetry(telemetry)) => Some(telemetry.into()),
+            _ => None,
+        })
+    }
 }
 
 /// Grid of the robot's servo periods, from shortly before the log.
@@ -462,6 +488,7 @@ fn moves(request: &Request) -> bool {
         Request::Configure(_)
         | Request::SetServo { .. }
         | Request::SetPulseRange { .. }
+        | Request::SetPassive(_)
         | Request::Trim { .. }
         | Request::Commit { .. }
         | Request::Follow(_)

@@ -177,6 +177,12 @@ impl<'a> Maker<'a> {
         optimum: &GaitFile,
         gait: &Named,
     ) -> Result<PlannedGait, String> {
+        if let Some(spring) = gait.file.passive {
+            return Err(format!(
+                "it leaves the {} joint to a spring; an experiment drives both joints",
+                spring.joint
+            ));
+        }
         let curve = AnyGait::from_file(&gait.file).map_err(|error| error.to_string())?;
         let played = |period: f64| Played {
             servos: self.servos,

@@ -16,6 +16,7 @@ use twin::is_configured_as;
 use super::access::{Access, RobotConnection};
 use super::motion::MAY_JUMP;
 use super::outputs::cause;
+use super::passive;
 use super::port::Pace;
 use super::rest::{is_off, nothing_under_way, wait_for_rest};
 use super::tank_cameras::TankCameras;
@@ -97,6 +98,7 @@ impl Bench {
         }
         let servo = file.servo.unwrap_or_default();
         let servos = Servos::on_robot(servo, line.robot.info(), &configuration);
+        passive::agree(&mut line, "this command", None, false)?;
         tracking.wait_for_robot(&mut line, &interrupt)?;
         aside(MAY_JUMP);
         Ok(Self {

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use host_link::LinkError;
 use host_link::robot::await_play::{at_rest, finished};
-use link_protocol::{Refusal, Status};
+use link_protocol::{Checked, Refusal, Status};
 use serde::Serialize;
 
 use super::access::{Access, Contact, RobotConnection};
@@ -121,10 +121,14 @@ pub(super) fn play(access: &Access, play: &Play, output: Output) -> Outcome {
     line.stops_on(&interrupt);
     let status = line.robot.status()?;
     nothing_under_way(&status)?;
-    let mut checked = status.held();
-    if let Some(upload) = upload {
-        checked.table_crc32 = upload.send(&mut line, &interrupt)?;
-    }
+    let checked = match upload {
+        // The upload may have set the passive joint.
+        Some(upload) => Checked {
+            table_crc32: upload.send(&mut line, &interrupt)?,
+            ..line.robot.held()?
+        },
+        None => status.held(),
+    };
     let cycles = play.cycles.unwrap_or(0);
     let robot = &mut line.robot;
     match robot.arm(false) {

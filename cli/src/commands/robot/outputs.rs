@@ -338,6 +338,8 @@ pub(super) fn flags(flags: Flags) -> Vec<&'static str> {
         (Flags::KEY_SET, "key set"),
         (Flags::PRESENT, "present"),
         (Flags::SHORT_STARTS, "short starts"),
+        (Flags::FRONT_PASSIVE, "front joint passive"),
+        (Flags::BACK_PASSIVE, "back joint passive"),
     ]
     .into_iter()
     .filter_map(|(flag, name)| flags.contains(flag).then_some(name))

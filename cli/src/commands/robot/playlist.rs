@@ -17,6 +17,7 @@ use swimmer_model::{Model, Pose};
 use super::Play;
 use super::access::{Access, RobotConnection};
 use super::outputs::{cause, state};
+use super::passive;
 use super::playing::duration;
 use super::port::Pace;
 use super::preflight::{Player, TankOptions};
@@ -96,6 +97,13 @@ pub(super) fn play(
     if !play.owner.force {
         made_for_it(&playlist, &configuration, file.as_ref())?;
     }
+    // A playlist drives both joints.
+    passive::agree(
+        &mut line,
+        &path.display().to_string(),
+        None,
+        play.owner.force,
+    )?;
     let player = Player::of_robot(line.robot.info(), &configuration, file.as_ref());
     let foretold = preflight(&tables, &player, &play.room)?;
     in_time(&tables, &line, None)?;

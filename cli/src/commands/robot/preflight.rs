@@ -4,11 +4,12 @@ use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use forecast::{Forecast, Meeting, Played, Servos, Tank, forecast, until_wall};
+use forecast::{Forecast, Meeting, Played, Servos, Tank, forecast, forecast_passive, until_wall};
 use link_protocol::{ANGLE_UNIT_RAD, Configuration, HelloReply, MAX_KNOTS, TangentialDrag};
 use nalgebra::Vector2;
+use passive_joint::PassiveJoint;
 use serde::Serialize;
-use swimmer_files::{AnyGait, SwimmerFile};
+use swimmer_files::{AnyGait, GaitSpring, SwimmerFile};
 use swimmer_model::{Links, Model, Pose, Swimmer};
 use twin::is_configured_as;
 
@@ -215,6 +216,7 @@ impl Arguments {
         &self,
         name: &str,
         gait: &AnyGait,
+        spring: Option<&GaitSpring>,
         player: &Player,
     ) -> Outcome<Preflight> {
         let model = Model::new(&player.swimmer).map_err(|error| {
@@ -228,7 +230,15 @@ impl Arguments {
             period: self.period,
             knots: MAX_KNOTS,
         };
-        let servo_file = forecast(&model, gait, &played).map_err(|error| Failure::tried(&error))?;
+        let servo_file = match spring {
+            None => forecast(&model, gait, &played),
+            Some(spring) => {
+                let passive = PassiveJoint::relaxing_in(&model, spring.joint.0, spring.relaxation);
+                let passive = passive.map_err(|error| Failure::bad_input(&error))?;
+                forecast_passive(&model, gait, &played, passive)
+            }
+        };
+        let servo_file = servo_file.map_err(|error| Failure::tried(&error))?;
         let fit = self.fit.as_deref().map(load_fit).transpose()?;
         let error = fit
             .as_ref()

@@ -1,4 +1,5 @@
-//! `swimmer robot servo`: the map of one servo between joint angle and pulse, and the pulses that its end stops allow.
+//! `swimmer robot servo`: the map of one servo between joint angle and pulse, the pulses that its end stops allow, and whether a
+//! spring is in its place.
 
 use std::fmt;
 use std::str::FromStr;
@@ -37,6 +38,24 @@ pub(super) struct Servo {
     /// Shortest and longest pulse that its end stops allow, µs, as 1400,1600: gaits beyond are refused
     #[arg(long, value_name = "SHORTEST,LONGEST", value_parser = range_us)]
     pulse_range: Option<RangeUs>,
+    /// A spring holds this joint in place of a servo: the robot sends it no pulses, whatever it plays
+    #[arg(long, conflicts_with = "driven")]
+    passive: bool,
+    /// This joint has a servo again and no spring; the robot must be on its USB cable, or its bench jumper just closed
+    #[arg(long)]
+    driven: bool,
+}
+
+impl Servo {
+    /// Passive joint of the robot with these arguments, given the present one.
+    fn passive(&self, held: Option<Joint>) -> Option<Joint> {
+        let joint = Joint::from(self.joint);
+        if self.passive {
+            Some(joint)
+        } else {
+            held.filter(|held| !(self.driven && *held == joint))
+        }
+    }
 }
 
 /// A joint on the command line.
@@ -120,6 +139,8 @@ pub(super) struct Set {
     pub(super) pulse_range_us: [f64; 2],
     /// Joint angles at the ends of that range, the smaller first.
     pub(super) reach_rad: [f64; 2],
+    /// A spring is in the place of this servo.
+    pub(super) passive: bool,
 }
 
 impl Set {
@@ -128,11 +149,11 @@ impl Set {
     /// # Errors
     /// The link's.
     pub(super) fn read(robot: &mut Robot<AnyPort>, joint: Joint) -> Result<Self, LinkError> {
-        Ok(Self::new(
-            joint,
-            &robot.servo(joint)?,
-            robot.pulse_range(joint)?,
-        ))
+        let set = Self::new(joint, &robot.servo(joint)?, robot.pulse_range(joint)?);
+        Ok(Self {
+            passive: robot.status()?.flags.passive() == Some(joint),
+            ..set
+        })
     }
 
     fn new(joint: Joint, settings: &ServoSettings, range: PulseRange) -> Self {
@@ -148,6 +169,7 @@ impl Set {
             trim_rad: decimal(map.trim),
             pulse_range_us: ends.map(|ns| f64::from(ns) / 1e3),
             reach_rad,
+            passive: false,
         }
     }
 
@@ -155,8 +177,12 @@ impl Set {
     pub(super) fn command(&self) -> String {
         let [shortest, longest] = self.pulse_range_us;
         format!(
-            "swimmer robot servo {} --sign {} --centre {} --slope {} --pulse-range {shortest},{longest}",
-            self.joint, self.sign, self.centre_us, self.slope_rad_per_us
+            "swimmer robot servo {} --sign {} --centre {} --slope {} --pulse-range {shortest},{longest}{}",
+            self.joint,
+            self.sign,
+            self.centre_us,
+            self.slope_rad_per_us,
+            if self.passive { " --passive" } else { "" }
         )
     }
 }
@@ -187,6 +213,9 @@ impl fmt::Display for Set {
                 "pulses",
                 format!("{shortest} to {longest} µs: {right} to {left}"),
             );
+        if self.passive {
+            rows.row("passive", "a spring is in its place: no pulses");
+        }
         write!(f, "{rows}")
     }
 }
@@ -220,7 +249,12 @@ pub(super) fn run(access: &Access, arguments: &Servo, output: Output) -> Outcome
     if let Some(range) = range {
         set_range(robot, joint, range)?;
     }
-    if wanted != before || range.is_some() {
+    let held = robot.status()?.flags.passive();
+    let passive = arguments.passive(held);
+    if passive != held {
+        robot.set_passive(passive)?;
+    }
+    if wanted != before || range.is_some() || passive != held {
         line.stored("the servo's map is")?;
     }
     let set = Set::read(&mut line.robot, joint)?;

@@ -50,7 +50,8 @@ const JOINTS: [Joint; 2] = [Joint::Front, Joint::Back];
 /// robot stopped and everything as it was. At the end the robot has stored its maps, and a swimmer file its `[servo]`.
 #[derive(Debug, clap::Args)]
 pub(super) struct Setup {
-    /// purcell, robot, robot-slender or a swimmer file with the links' lengths; left out, the set-up prompts for it
+    /// A preset that `swimmer swimmers` lists, or a swimmer file with the links' lengths; left out, the set-up prompts
+    /// for it
     #[arg(long, value_name = "SWIMMER")]
     swimmer: Option<String>,
     /// Write the swimmer file with the results; left out, the set-up prompts for it
@@ -73,6 +74,12 @@ pub(super) fn run(access: &Access, arguments: &Setup, output: Output) -> Outcome
         return Err(Failure::Tried(format!(
             "the robot is {}, and was left alone: stop it first (`swimmer robot stop`)",
             state(status.state)
+        )));
+    }
+    if let Some(joint) = status.flags.passive() {
+        let joint = name_of(joint);
+        return Err(Failure::Tried(format!(
+            "the {joint} joint of this robot is passive and gets no pulses, so its servo cannot be set up; if it has one again, run `swimmer robot servo {joint} --driven` first"
         )));
     }
     let before = [

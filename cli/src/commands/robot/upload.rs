@@ -6,13 +6,14 @@ use std::time::Duration;
 
 use gait_player::GaitTable;
 use host_link::{LinkError, Port as _};
-use link_protocol::{Configuration, MAX_KNOTS, TableInfo};
+use link_protocol::{Configuration, Joint, MAX_KNOTS, TableInfo};
 use serde::Serialize;
-use swimmer_files::{AnyGait, GaitFile, GaitSpec, SwimmerFile, SwimmerHash};
+use swimmer_files::{AnyGait, GaitFile, GaitSpec, GaitSpring, SwimmerFile, SwimmerHash};
 use twin::is_configured_as;
 
 use super::access::{Access, RobotConnection};
 use super::outputs::{Gait, print_refusal};
+use super::passive;
 use super::port::Pace;
 use super::preflight::{Player, Preflight};
 use super::{Owner, Upload};
@@ -87,6 +88,9 @@ pub(super) fn run(access: &Access, arguments: &Upload, output: Output) -> Outcom
     if !arguments.owner.force {
         gait.check_swimmer(&configuration, file.as_ref())?;
     }
+    if !arguments.dry_run {
+        passive::agree(&mut line, &gait.name, gait.passive(), arguments.owner.force)?;
+    }
     if let Some(file) = file.filter(|file| !is_configured_as(&configuration, &file.swimmer)) {
         aside(&format!(
             "note: the robot is configured as another swimmer than `{}`, which --swimmer names and this forecast is for; send it with `swimmer robot configure`, or leave --swimmer out",
@@ -97,21 +101,22 @@ pub(super) fn run(access: &Access, arguments: &Upload, output: Output) -> Outcom
         forecast_only(arguments, &gait, &player, output)?;
         return line.close();
     }
-    let preflight = match arguments
-        .preflight
-        .foretell(&gait.name, &gait.gait, &player)
-    {
-        Ok(preflight) => {
-            output.line(&preflight.to_string());
-            Some(preflight)
-        }
-        Err(Failure::Tried(reason)) => {
-            // The robot has the last word, and will say it.
-            aside(&format!("No forecast is possible: {reason}."));
-            None
-        }
-        Err(failure) => return Err(failure),
-    };
+    let preflight =
+        match arguments
+            .preflight
+            .foretell(&gait.name, &gait.gait, gait.spring.as_ref(), &player)
+        {
+            Ok(preflight) => {
+                output.line(&preflight.to_string());
+                Some(preflight)
+            }
+            Err(Failure::Tried(reason)) => {
+                // The robot has the last word, and will say it.
+                aside(&format!("No forecast is possible: {reason}."));
+                None
+            }
+            Err(failure) => return Err(failure),
+        };
     // The robot itself refuses the problems that it can detect.
     let unseen = preflight
         .as_ref()
@@ -140,9 +145,10 @@ pub(super) fn run(access: &Access, arguments: &Upload, output: Output) -> Outcom
 
 /// `--dry-run`: exit status 1 if the gait must not be played.
 fn forecast_only(arguments: &Upload, gait: &Prepared, player: &Player, output: Output) -> Outcome {
-    let preflight = arguments
-        .preflight
-        .foretell(&gait.name, &gait.gait, player)?;
+    let preflight =
+        arguments
+            .preflight
+            .foretell(&gait.name, &gait.gait, gait.spring.as_ref(), player)?;
     let refused = preflight.refusal();
     let refused = refused.map(|reason| format!("{} must not be played: {reason}", gait.name));
     let foretold = Foretold { preflight };
@@ -183,6 +189,7 @@ impl BeforePlay {
             self.gait
                 .check_swimmer(&configuration, self.file.as_ref())?;
         }
+        passive::agree(line, &self.gait.name, self.gait.passive(), self.force)?;
         send(line, &self.gait, interrupt)?;
         Ok(self.gait.table.crc32())
     }
@@ -195,6 +202,8 @@ struct Prepared {
     table: GaitTable,
     /// Swimmer that the gait was made for, if its file states one.
     made_for: Option<MadeFor>,
+    /// Passive joint that its file names.
+    spring: Option<GaitSpring>,
 }
 
 /// Swimmer that a gait file states.
@@ -205,25 +214,18 @@ pub(super) struct MadeFor {
 
 impl Prepared {
     fn new(spec: &GaitSpec) -> Outcome<Self> {
-        let made_for = match spec {
+        let (made_for, spring) = match spec {
             GaitSpec::File { path, .. } => {
                 let file = GaitFile::load(path)?;
-                if let Some(passive) = &file.passive {
-                    aside(&format!(
-                        "note: the {} joint of {} is passive: unplug its servo; the robot sends pulses for both joints, and only those of \
-                         the other joint may move one",
-                        passive.joint,
-                        path.display()
-                    ));
-                }
-                file.swimmer_hash.map(|hash| MadeFor {
+                let made_for = file.swimmer_hash.map(|hash| MadeFor {
                     name: file
                         .swimmer_name
                         .unwrap_or_else(|| "another swimmer".into()),
                     hash,
-                })
+                });
+                (made_for, file.passive)
             }
-            GaitSpec::Circle { .. } | GaitSpec::Square { .. } => None,
+            GaitSpec::Circle { .. } | GaitSpec::Square { .. } => (None, None),
         };
         let gait = load_gait(spec)?;
         let table = table_of(&gait).map_err(|error| {
@@ -237,7 +239,13 @@ impl Prepared {
             gait,
             table,
             made_for,
+            spring,
         })
+    }
+
+    /// The joint that the gait leaves to a spring.
+    fn passive(&self) -> Option<Joint> {
+        self.spring.map(|spring| spring.joint.0)
     }
 
     fn check_swimmer(&self, configuration: &Configuration, named: Option<&SwimmerFile>) -> Outcome {

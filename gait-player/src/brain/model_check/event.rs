@@ -154,6 +154,8 @@ pub(super) fn requests() -> Vec<Request> {
             joint: Joint::Back,
             trim: 400,
         },
+        Request::SetPassive(Some(Joint::Back)),
+        Request::SetPassive(None),
     ]
 }
 

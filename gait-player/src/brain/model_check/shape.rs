@@ -96,6 +96,7 @@ impl World {
                 usb: self.via == Transport::Usb,
                 window: brain.bench.open(self.now_us),
                 leaving: brain.bench.leaves(u64::MAX),
+                passive: brain.settings.passive.is_some(),
                 far: brain.settings.configuration.middle_m > 1.5 * brain.built.middle_m,
                 servo: (
                     brain.settings.servos[1].reversed,
@@ -193,6 +194,7 @@ struct Present {
     window: bool,
     leaving: bool,
     far: bool,
+    passive: bool,
     /// Direction, trim, and trim at the bench of the back servo.
     servo: (bool, i16, i16),
 }

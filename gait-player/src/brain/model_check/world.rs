@@ -225,6 +225,7 @@ impl World {
             + u8::from(far)
             + u8::from(servo.reversed)
             + u8::from(servo.trim == 400)
+            + u8::from(brain.settings.passive.is_none())
             + u8::from(brain.bench.leaves(u64::MAX))
     }
 
@@ -239,6 +240,12 @@ impl World {
         let output = self.brain.tick(self.now_us, &inputs);
         let powered = !matches!(output.state, StateName::Stopped | StateName::EStopped);
         assert_eq!(output.pulses_ns.is_some(), powered, "{:?}", output.state);
+        if let Some(pulses_ns) = output.pulses_ns {
+            let passive = self.brain.settings.passive.map(Joint::index);
+            for (joint, pulse_ns) in pulses_ns.into_iter().enumerate() {
+                assert_eq!(pulse_ns == 0, passive == Some(joint), "{:?}", output.state);
+            }
+        }
         if output.storage_wanted {
             let Ok(()) = self.brain.serve_storage(self.now_us, &mut self.flash);
         }

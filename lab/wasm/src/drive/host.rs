@@ -184,6 +184,12 @@ pub(super) fn upload(lab: &mut Lab, bytes: &[u8]) -> Outcome {
         now_s,
         gait,
     } = parsed(bytes)?;
+    if let Some(spring) = gait.file(Files::Unavailable)?.passive {
+        return Err(format!(
+            "this gait leaves the {} joint to a spring; `swimmer robot upload` sends it and switches the pulses of that joint off",
+            spring.joint
+        ));
+    }
     let table = table(&gait.read(Files::Unavailable)?, MAX_KNOTS)
         .map_err(|why| format!("making a table of the gait for the robot: {why}"))?;
     let host: &mut Host = lab.kept.get(number)?;

@@ -217,6 +217,11 @@ pub(crate) fn requests() -> std::vec::Vec<(&'static str, Request)> {
                 checked: CHECKED,
             }),
         ),
+        (
+            "request/set passive",
+            Request::SetPassive(Some(Joint::Back)),
+        ),
+        ("request/set no passive", Request::SetPassive(None)),
     ]
 }
 

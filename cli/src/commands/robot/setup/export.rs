@@ -72,6 +72,7 @@ mod tests {
             trim_rad: 0.0,
             pulse_range_us: [1400.0, 1600.0],
             reach_rad: [-2.8, 2.8],
+            passive: false,
         };
         let text = text(&file, &[set("front", '-'), set("back", '+')]);
         assert!(
