@@ -86,7 +86,11 @@ impl Bench {
             access.connect(command, Pace::RealTime)?
         };
         line.stops_on(&interrupt);
-        nothing_under_way(&line.robot.status()?)?;
+        let status = line.robot.status()?;
+        nothing_under_way(&status)?;
+        if let Some(reason) = passive::refusal("this command", None, status.flags.passive()) {
+            return Err(Failure::Tried(reason));
+        }
         let configuration = line.robot.configuration()?;
         // The swimmer of a virtual tank may be another on purpose.
         if !is_virtual && !is_configured_as(&configuration, &file.swimmer) {
@@ -98,7 +102,6 @@ impl Bench {
         }
         let servo = file.servo.unwrap_or_default();
         let servos = Servos::on_robot(servo, line.robot.info(), &configuration);
-        passive::agree(&mut line, "this command", None, false)?;
         tracking.wait_for_robot(&mut line, &interrupt)?;
         aside(MAY_JUMP);
         Ok(Self {
