@@ -53,6 +53,7 @@ const OTHER: Checked = Checked {
     settings_crc32: 1,
 };
 
+#[allow(clippy::too_many_lines)] // a plain list
 pub(super) fn requests() -> Vec<Request> {
     let play = |cycles, detached| {
         Request::Play(Play {
