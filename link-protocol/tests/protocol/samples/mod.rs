@@ -121,6 +121,7 @@ fn counters() -> Counters {
     }
 }
 
+#[allow(clippy::too_many_lines)] // one entry per request
 pub(crate) fn requests() -> std::vec::Vec<(&'static str, Request)> {
     let chunk = |len: usize| Chunk {
         upload: 7,
