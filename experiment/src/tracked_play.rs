@@ -39,6 +39,7 @@ pub struct TrackedPlay {
     began_s: f64,
     cycles: u32,
     outside: u32,
+    last_seen_s: Option<f64>,
     reports: Vec<CycleReport>,
 }
 
@@ -65,6 +66,7 @@ impl TrackedPlay {
             began_s,
             cycles,
             outside: 0,
+            last_seen_s: None,
             reports: Vec::new(),
         }
     }
@@ -77,6 +79,8 @@ impl TrackedPlay {
             self.next_cycle();
         }
         self.monitor.pose(pose);
+        let last_s = self.last_seen_s.unwrap_or(f64::NEG_INFINITY);
+        self.last_seen_s = Some(pose.time_s.max(last_s));
         let time = (pose.time_s - self.began_s).rem_euclid(self.gait.period_s);
         let is_outside = pose.time_s > self.began_s
             && self.walls.is_some_and(|walls| {
@@ -106,6 +110,11 @@ impl TrackedPlay {
     /// Returns `true` if all cycles are evaluated.
     pub fn is_whole(&self) -> bool {
         self.cycle() >= self.cycles
+    }
+
+    /// Time of the latest pose \[s\].
+    pub fn last_seen_s(&self) -> Option<f64> {
+        self.last_seen_s
     }
 
     /// Start of the first cycle \[s\].

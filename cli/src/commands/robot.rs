@@ -25,6 +25,7 @@ mod setup;
 mod shared_port;
 mod stop;
 mod tank_cameras;
+mod tracked_play;
 mod tracking;
 mod trim;
 mod upload;
@@ -33,6 +34,7 @@ mod watch;
 use std::path::PathBuf;
 
 use host_link::LinkError;
+use pose_source::SourceName;
 use swimmer_files::GaitSpec;
 
 pub(crate) use self::access::Access;
@@ -177,6 +179,13 @@ struct Play {
     /// Start nothing: wait for the end of the play that goes on detached, as if it had not been; Ctrl-C stops it
     #[arg(long, conflicts_with_all = ["gait", "cycles", "period", "detach", "at_most", "swimmer", "force"])]
     attach: bool,
+    /// Compare each cycle with the prediction by what cameras see: natnet[:HOST[,LOCAL]] (Motive), tcp:HOST:PORT (JSON lines), -
+    /// (JSON lines on standard input), or `twin` for the cameras of --port twin or emulator. With --tank the robot is stopped 10 mm
+    /// from a wall
+    #[arg(long, value_name = "SOURCE", requires = "gait", conflicts_with_all = ["playlist", "detach", "attach"], help_heading = "Tracking")]
+    track: Option<SourceName>,
+    #[command(flatten)]
+    visible: tracking::Visible,
 }
 
 #[derive(Debug, clap::Args)]
@@ -221,6 +230,12 @@ struct Watch {
     /// End after this many seconds
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     seconds: Option<f64>,
+    /// Draw what cameras see over the robot's own prediction: natnet[:HOST[,LOCAL]] (Motive), tcp:HOST:PORT (JSON lines), - (JSON
+    /// lines on standard input)
+    #[arg(long, value_name = "SOURCE", help_heading = "Tracking")]
+    track: Option<SourceName>,
+    #[command(flatten)]
+    visible: tracking::Visible,
 }
 
 #[derive(Debug, clap::Args)]

@@ -50,4 +50,6 @@ mod sweep_slurm;
 #[cfg(unix)]
 mod table;
 mod track;
+#[cfg(unix)]
+mod tracked_play;
 mod tracks;

@@ -12,15 +12,15 @@ use serde_json::Value;
 use crate::binary::{command, number, swimmer_in};
 
 /// A twin whose cameras record and stream; ended politely.
-struct Streaming {
+pub(crate) struct Streaming {
     child: Child,
-    robot: String,
-    cameras: String,
+    pub(crate) robot: String,
+    pub(crate) cameras: String,
 }
 
 impl Streaming {
-    fn start(folder: &Path) -> Self {
-        let words = [
+    pub(crate) fn start(folder: &Path, more: &[&str]) -> Self {
+        let mut words = vec![
             "twin",
             "--tcp",
             "127.0.0.1:0",
@@ -29,6 +29,7 @@ impl Streaming {
             "--track",
             "run.csv",
         ];
+        words.extend(more);
         let mut child = command(folder, &words)
             .stdout(Stdio::piped())
             .spawn()
@@ -49,7 +50,7 @@ impl Streaming {
         }
     }
 
-    fn end(&mut self) {
+    pub(crate) fn end(&mut self) {
         let id = self.child.id().to_string();
         Command::new("kill").args(["-INT", &id]).status().unwrap();
         self.child.wait().unwrap();
@@ -149,7 +150,7 @@ fn triple(value: &Value) -> [f64; 3] {
 fn an_independent_reader_and_ours_decode_what_the_twin_recorded() {
     let python = python();
     let folder = tempfile::tempdir().unwrap();
-    let mut twin = Streaming::start(folder.path());
+    let mut twin = Streaming::start(folder.path(), &[]);
     let (_, port) = twin.cameras.rsplit_once(':').unwrap();
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/natnet/read_stream.py");
     let reader = Command::new(python)

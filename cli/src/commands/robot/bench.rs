@@ -7,7 +7,7 @@ use std::time::Duration;
 use experiment::{Course, Event, Interruption};
 use forecast::{PlaylistTable, Servos};
 use host_link::LinkError;
-use link_protocol::{Checked, StateName, StopCause, Telemetry};
+use link_protocol::{Checked, Configuration, StateName, Status, StopCause, Telemetry};
 use pose_source::SourceName;
 use swimmer_files::SwimmerFile;
 use swimmer_model::Model;
@@ -114,6 +114,27 @@ impl Bench {
             course: None,
             operator_reported: false,
         })
+    }
+
+    /// Model of the swimmer.
+    pub(super) fn model(&self) -> &Model<f64> {
+        &self.model
+    }
+
+    /// Swimmer and limits that the robot is configured for.
+    ///
+    /// # Errors
+    /// The link's.
+    pub(super) fn configuration(&mut self) -> Outcome<Configuration> {
+        Ok(self.line.robot.configuration()?)
+    }
+
+    /// State of the robot.
+    ///
+    /// # Errors
+    /// The link's.
+    pub(super) fn status(&mut self) -> Outcome<Status> {
+        Ok(self.line.robot.status()?)
     }
 
     /// Servos of the robot, described by the swimmer file.

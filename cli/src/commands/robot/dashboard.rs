@@ -2,6 +2,7 @@
 //!
 //! Narrow terminals show all panes below each other, wide ones the body and the trail side by side.
 
+mod overlay;
 mod panes;
 
 use std::collections::VecDeque;
@@ -15,8 +16,9 @@ use ratatui::layout::{Constraint, Layout};
 use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
 use ratatui::widgets::Paragraph;
-use swimmer_model::Links;
+use swimmer_model::{Links, Pose};
 
+use self::overlay::Overlay;
 use super::playing::Playing;
 
 /// Everything that the screen shows.
@@ -34,6 +36,8 @@ pub(super) struct Dashboard {
     pub(super) clock: Option<ClockFit>,
     /// Path of the middle link, by the robot's own prediction \[m\].
     trail: VecDeque<Vector2<f64>>,
+    /// Tracked path over it.
+    overlay: Overlay,
     /// Last request sent from here.
     pub(super) note: &'static str,
     /// The first telemetry, with the frames that had been sent and the telemetry that had come by then: both of whoever has
@@ -62,6 +66,7 @@ impl Dashboard {
             link: LinkCounters::default(),
             clock: None,
             trail: VecDeque::new(),
+            overlay: Overlay::default(),
             note: "",
             first: None,
         }
@@ -92,6 +97,7 @@ impl Dashboard {
         if began && telemetry.cycle == 0 && telemetry.state == StateName::Playing {
             // A new play starts at the origin of its own frame.
             self.trail.clear();
+            self.overlay.clear();
         }
         let at = Vector2::new(telemetry.pose.x, telemetry.pose.y).cast();
         if self.trail.back() != Some(&at) {
@@ -104,6 +110,25 @@ impl Dashboard {
             .get_or_insert((*telemetry, [self.link.frames_sent, self.link.telemetry]));
         self.play = self.play.at(telemetry);
         self.telemetry = Some(*telemetry);
+    }
+
+    /// Takes a tracked pose in the tank's frame.
+    pub(super) fn track(&mut self, tracked: &Pose<f64>) {
+        if self.telemetry.is_some() {
+            let predicted = self.predicted();
+            self.overlay.push(tracked, &predicted);
+        }
+    }
+
+    /// Pose by the robot's own prediction.
+    fn predicted(&self) -> Pose<f64> {
+        self.telemetry.map_or_else(Pose::identity, |telemetry| {
+            Pose::new(
+                f64::from(telemetry.pose.x),
+                f64::from(telemetry.pose.y),
+                f64::from(telemetry.pose.theta),
+            )
+        })
     }
 
     /// Draws it.

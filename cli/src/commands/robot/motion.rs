@@ -18,7 +18,7 @@ use super::port::Pace;
 use super::port_owner::PortRequest;
 use super::rest::{nothing_under_way, ready, stopped_on_failure, wait_for_rest};
 use super::upload::BeforePlay;
-use super::{Arm, Pause, Play};
+use super::{Arm, Pause, Play, tracked_play};
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::{CTRL_C, Interrupt};
 use crate::output::{Output, aside};
@@ -32,7 +32,7 @@ pub(super) const MAY_JUMP: &str =
 
 /// Result of a play.
 #[derive(Debug, Serialize)]
-struct Played {
+pub(super) struct Played {
     state: &'static str,
     cause: &'static str,
     /// Cycles played to their end.
@@ -44,7 +44,7 @@ struct Played {
 }
 
 impl Played {
-    fn new(status: &Status, detached: bool) -> Self {
+    pub(super) fn new(status: &Status, detached: bool) -> Self {
         Self {
             state: state(status.state),
             cause: cause(status.cause),
@@ -98,11 +98,16 @@ pub(super) fn play(access: &Access, play: &Play, output: Output) -> Outcome {
         return line.close();
     }
     play.room.check()?;
-    if play.room.tank.is_some() && play.playlist.is_none() {
+    if play.room.tank.is_some() && play.playlist.is_none() && play.track.is_none() {
         return Err(Failure::BadInput(
-            "--tank looks ahead along a playlist: name one by --playlist; `swimmer robot upload --tank` forecasts a gait"
+            "--tank looks ahead along a playlist, or watches the walls with --track: name one of them; `swimmer robot upload --tank` \
+             forecasts a gait"
                 .to_owned(),
         ));
+    }
+    if let Some(source) = &play.track {
+        let cameras = play.visible.of(source);
+        return tracked_play::play(access, play, cameras, &interrupt, output);
     }
     if let Some(path) = &play.playlist {
         return playlist::play(access, play, path, &interrupt, output);

@@ -61,9 +61,16 @@ pub(crate) struct Visible {
 impl Tracked {
     /// Source and names of these cameras.
     pub(crate) fn cameras(&self) -> CamerasOf<'_> {
+        self.visible.of(&self.track)
+    }
+}
+
+impl Visible {
+    /// Cameras behind a source that see these things.
+    pub(super) fn of<'a>(&'a self, source: &'a SourceName) -> CamerasOf<'a> {
         CamerasOf {
-            source: &self.track,
-            visible: &self.visible,
+            source,
+            visible: self,
         }
     }
 }

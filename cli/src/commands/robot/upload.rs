@@ -179,15 +179,34 @@ impl BeforePlay {
         })
     }
 
+    /// Refuses a gait that was made for another swimmer than the robot is configured for.
+    ///
+    /// # Errors
+    /// [`Failure::Tried`].
+    pub(super) fn check(&self, configuration: &Configuration) -> Outcome {
+        if self.force {
+            return Ok(());
+        }
+        self.gait.check_swimmer(configuration, self.file.as_ref())
+    }
+
+    /// Returns `true` if the gait leaves a joint to a spring.
+    pub(super) fn has_passive_joint(&self) -> bool {
+        self.gait.passive().is_some()
+    }
+
+    /// Name and table of the gait.
+    pub(super) fn table(&self) -> (&str, &GaitTable) {
+        (&self.gait.name, &self.gait.table)
+    }
+
     /// Uploads it; returns the checksum of its table.
     ///
     /// # Errors
     /// [`Failure::Tried`] if it is another swimmer's or the robot refuses it, and the link's.
     pub(super) fn send(&self, line: &mut RobotConnection, interrupt: &Interrupt) -> Outcome<u32> {
         if !self.force {
-            let configuration = line.robot.configuration()?;
-            self.gait
-                .check_swimmer(&configuration, self.file.as_ref())?;
+            self.check(&line.robot.configuration()?)?;
         }
         passive::agree(line, &self.gait.name, self.gait.passive(), self.force)?;
         send(line, &self.gait, interrupt)?;

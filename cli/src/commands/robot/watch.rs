@@ -6,7 +6,9 @@ use std::io::{self, IsTerminal as _};
 use std::time::{Duration, Instant};
 
 use crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
+use experiment::Pose;
 use link_protocol::Telemetry;
+use pose_source::SourceName;
 use ratatui::DefaultTerminal;
 
 use super::Watch;
@@ -15,6 +17,8 @@ use super::dashboard::Dashboard;
 use super::outputs::telemetry_line;
 use super::playing::Playing;
 use super::preflight::configured;
+use super::tank_cameras::TankCameras;
+use super::tracking::Tracking;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
 use crate::output::{Output, aside};
@@ -31,10 +35,31 @@ const LET_GO: &str = "The program that had the port has let it go.";
 /// `swimmer robot watch`; at the end, for scripts, the status.
 pub(super) fn watch(access: &Access, arguments: &Watch, output: Output) -> Outcome {
     let interrupt = Interrupt::install_with_a_robot()?;
+    if arguments.track == Some(SourceName::Twin) {
+        return Err(Failure::BadInput(
+            "a fresh virtual robot rests; `swimmer twin --pty LINK --natnet ADDR` makes one to watch by --track natnet:ADDR"
+                .to_owned(),
+        ));
+    }
+    let cameras = arguments
+        .track
+        .as_ref()
+        .map(|source| arguments.visible.of(source));
+    if let Some(cameras) = &cameras {
+        cameras.check(access)?;
+    }
     let mut source = Source::find(access)?;
+    let mut tracking = match cameras {
+        Some(cameras) => {
+            let (introduction, _) = source.introduction()?;
+            let (_, swimmer) = configured(&introduction.configuration);
+            Some(cameras.open(TankCameras::default(), &swimmer.links)?)
+        }
+        None => None,
+    };
     let end = arguments.seconds.map(Duration::from_secs_f64);
     if output.json || !io::stdout().is_terminal() || !io::stdin().is_terminal() {
-        lines(&mut source, end, &interrupt, output)?;
+        lines(&mut source, &mut tracking, end, &interrupt, output)?;
         if output.json {
             return source.leave(output);
         }
@@ -42,7 +67,7 @@ pub(super) fn watch(access: &Access, arguments: &Watch, output: Output) -> Outco
     }
     source.shows_silence();
     let dashboard = prepare(&mut source)?;
-    let left = screen(&mut source, dashboard, end, &interrupt)?;
+    let left = screen(&mut source, &mut tracking, dashboard, end, &interrupt)?;
     output.line(left);
     source.leave(output)
 }
@@ -50,17 +75,22 @@ pub(super) fn watch(access: &Access, arguments: &Watch, output: Output) -> Outco
 /// A line each second of the robot's time.
 fn lines(
     source: &mut Source,
+    tracking: &mut Option<Tracking>,
     end: Option<Duration>,
     interrupt: &Interrupt,
     output: Output,
 ) -> Outcome {
     let (begun, mut due) = (source.now(), 0);
+    let mut pose = None;
     while !interrupt.requested() && end.is_none_or(|end| source.now().saturating_sub(begun) < end) {
-        match source.beat()? {
+        let beat = source.beat()?;
+        pose = seen(tracking, source.now())?.pop().or(pose);
+        match beat {
             Beat::Telemetry(telemetry) if telemetry.robot_us >= due => {
                 due =
                     telemetry.robot_us + u64::try_from(LINE_EVERY.as_micros()).unwrap_or(u64::MAX);
-                output.line(&telemetry_line(&telemetry));
+                output
+                    .line(&(telemetry_line(&telemetry) + &tracked(tracking.as_ref(), pose.take())));
             }
             Beat::Telemetry(_) | Beat::Nothing => {}
             Beat::OutOfReach(error) => return Err(error.into()),
@@ -71,6 +101,28 @@ fn lines(
         }
     }
     Ok(())
+}
+
+/// Poses of the middle link in the tank since the last call.
+fn seen(tracking: &mut Option<Tracking>, now: Duration) -> Outcome<Vec<Pose>> {
+    let Some(tracking) = tracking else {
+        return Ok(Vec::new());
+    };
+    tracking.poses(now.as_secs_f64())
+}
+
+/// Tracked pose at the end of a line.
+fn tracked(tracking: Option<&Tracking>, pose: Option<Pose>) -> String {
+    match (tracking, pose) {
+        (None, _) => String::new(),
+        (Some(_), None) => "  not seen".to_owned(),
+        (Some(_), Some(pose)) => format!(
+            "  tracked x {:+8.2} mm  y {:+7.2} mm  θ {:+6.1}°",
+            pose.x_m * 1e3,
+            pose.y_m * 1e3,
+            pose.heading_rad.to_degrees()
+        ),
+    }
 }
 
 /// Listens for this time on the port's clock, or until Ctrl-C.
@@ -130,12 +182,20 @@ fn wish(key: KeyEvent) -> Option<Wish> {
 /// Draws until `q`; the terminal is as before afterwards, whatever happens. Returns what to say of the robot that is left.
 fn screen(
     source: &mut Source,
+    tracking: &mut Option<Tracking>,
     mut dashboard: Dashboard,
     end: Option<Duration>,
     interrupt: &Interrupt,
 ) -> Outcome<&'static str> {
     let mut terminal = ratatui::try_init().map_err(no_terminal)?;
-    let shown = show(&mut terminal, source, &mut dashboard, end, interrupt);
+    let shown = show(
+        &mut terminal,
+        source,
+        tracking,
+        &mut dashboard,
+        end,
+        interrupt,
+    );
     ratatui::restore();
     shown
 }
@@ -143,6 +203,7 @@ fn screen(
 fn show(
     terminal: &mut DefaultTerminal,
     source: &mut Source,
+    tracking: &mut Option<Tracking>,
     dashboard: &mut Dashboard,
     end: Option<Duration>,
     interrupt: &Interrupt,
@@ -171,6 +232,9 @@ fn show(
             Beat::LetGo => return Ok(LET_GO),
         }
         let now = source.now();
+        for pose in seen(tracking, now)? {
+            dashboard.track(&pose.placed());
+        }
         dashboard.silent = now.saturating_sub(heard);
         while event::poll(Duration::ZERO).map_err(no_terminal)? {
             let Event::Key(key) = event::read().map_err(no_terminal)? else {

@@ -169,22 +169,33 @@ impl Dashboard {
 
     /// Path since the play began, by the robot's own prediction.
     pub(super) fn trail(&self, frame: &mut Frame<'_>, area: Rect) {
-        let pose = self.telemetry.map_or_else(Pose::identity, |telemetry| {
-            Pose::new(
-                f64::from(telemetry.pose.x),
-                f64::from(telemetry.pose.y),
-                f64::from(telemetry.pose.theta),
+        let pose = self.predicted();
+        let title = |what: &str, pose: &Pose<f64>| {
+            format!(
+                " {what} x {:+.1} y {:+.1} mm θ {:+.1}° ",
+                pose.x * 1e3,
+                pose.y * 1e3,
+                pose.theta.to_degrees()
             )
-        });
-        let block = Block::bordered().title(format!(
-            " Predicted x {:+.1} y {:+.1} mm θ {:+.1}° ",
-            pose.x * 1e3,
-            pose.y * 1e3,
-            pose.theta.to_degrees()
-        ));
-        let nose = pose.transform(&Vector2::new(0.5 * self.links.middle, 0.0));
-        let tail = pose.transform(&Vector2::new(-0.5 * self.links.middle, 0.0));
-        let all = || self.trail.iter().copied().chain([nose, tail]);
+        };
+        let mut block = Block::bordered().title(title("Predicted", &pose));
+        let middle = |pose: &Pose<f64>| {
+            [0.5, -0.5].map(|share| pose.transform(&Vector2::new(share * self.links.middle, 0.0)))
+        };
+        let [nose, tail] = middle(&pose);
+        let tracked = self.overlay.latest();
+        if let Some(tracked) = &tracked {
+            block = block.title_bottom(title("Tracked", tracked));
+        }
+        let tracked = tracked.map(|pose| middle(&pose));
+        let all = || {
+            let ends = tracked.into_iter().flatten().chain([nose, tail]);
+            self.trail
+                .iter()
+                .copied()
+                .chain(self.overlay.trail())
+                .chain(ends)
+        };
         let range = |of: fn(&Vector2<f64>) -> f64| {
             let low = all().map(|p| of(&p)).fold(f64::INFINITY, f64::min);
             let high = all().map(|p| of(&p)).fold(f64::NEG_INFINITY, f64::max);
@@ -193,6 +204,7 @@ impl Dashboard {
         };
         let (x, y) = equal_axes(block.inner(area), range(|p| p.x), range(|p| p.y));
         let points: Vec<(f64, f64)> = self.trail.iter().map(|p| (p.x, p.y)).collect();
+        let seen: Vec<(f64, f64)> = self.overlay.trail().map(|p| (p.x, p.y)).collect();
         let canvas = Canvas::default()
             .block(block)
             .marker(Marker::Braille)
@@ -204,6 +216,15 @@ impl Dashboard {
                     color: Color::Yellow,
                 });
                 context.draw(&Stroke::new(tail.x, tail.y, nose.x, nose.y, Color::Cyan));
+                // Over the prediction.
+                context.draw(&Points {
+                    coords: &seen,
+                    color: Color::Magenta,
+                });
+                if let Some([nose, tail]) = tracked {
+                    let stroke = Stroke::new(tail.x, tail.y, nose.x, nose.y, Color::Magenta);
+                    context.draw(&stroke);
+                }
             });
         frame.render_widget(canvas, area);
     }

@@ -1,0 +1,384 @@
+//! `swimmer robot play --track`: a play under the monitor, each cycle against its prediction.
+
+use std::fmt;
+
+use experiment::{
+    Course, CycleReport, Departure, Event, GaitOnRobot, Interruption, MeasuredMotion, TankWalls,
+    TrackedPlay,
+};
+use forecast::PlaylistTable;
+use serde::Serialize;
+
+use super::Play;
+use super::access::Access;
+use super::bench::Bench;
+use super::motion::Played;
+use super::outputs::print_refusal;
+use super::playing;
+use super::tracking::CamerasOf;
+use super::upload::BeforePlay;
+use crate::arguments::load_swimmer;
+use crate::failure::{Failure, Outcome};
+use crate::interrupt::{CTRL_C, Interrupt};
+use crate::output::{Output, aside};
+use crate::quantity;
+
+/// Seed of a fresh virtual robot.
+const SEED: u64 = 1;
+/// A robot that is not seen for longer is stopped \[s\].
+const LONGEST_BLANK_S: f64 = 5.0;
+/// Distance from the walls of `--tank` at which the robot is stopped \[m\].
+const MARGIN_M: f64 = 0.01;
+
+/// Plays a gait, and compares each tracked cycle with its prediction.
+pub(super) fn play(
+    access: &Access,
+    play: &Play,
+    cameras: CamerasOf<'_>,
+    interrupt: &Interrupt,
+    output: Output,
+) -> Outcome {
+    let Some(gait) = &play.gait else {
+        return Err(Failure::BadInput(
+            "--track compares with the prediction for a gait: name it by --gait".to_owned(),
+        ));
+    };
+    let upload = BeforePlay::new(gait, &play.owner)?;
+    if upload.has_passive_joint() {
+        return Err(Failure::BadInput(
+            "--track compares with the prediction for two servos, and this gait leaves a joint to a spring; play it without --track"
+                .to_owned(),
+        ));
+    }
+    let named = play.owner.swimmer.as_deref();
+    let file = load_swimmer(named.unwrap_or("robot"))?;
+    let command = "swimmer robot play --track";
+    let mut bench = Bench::open(access, command, cameras, &file, SEED, interrupt.clone())?;
+    upload.check(&bench.configuration()?)?;
+    let (name, table) = upload.table();
+    let table = PlaylistTable {
+        table: table.clone(),
+        cycles: play.cycles.unwrap_or(0),
+        period_us: microseconds(play.period),
+        step: 0,
+    };
+    let course = Course::of_cycle(bench.model(), &table.table, table.period_us, bench.servos());
+    let mut monitored = Monitored {
+        gait: GaitOnRobot {
+            course,
+            period_s: play.period,
+        },
+        cycles: play.cycles.unwrap_or(u32::MAX),
+        walls: play.room.tank.map(|tank| TankWalls {
+            tank,
+            margin_m: MARGIN_M,
+        }),
+        play: None,
+        shown: 0,
+        reason: None,
+        output,
+    };
+    if let Some(event) = bench.play(name, &table) {
+        return Err(Failure::Tried(interrupted(&event)));
+    }
+    output.line(&match play.cycles {
+        Some(cycles) => format!(
+            "Playing {cycles} cycles of {} s: {} and the start. Ctrl-C stops.",
+            play.period,
+            playing::duration(f64::from(cycles) * play.period)
+        ),
+        None => "Playing without end. Ctrl-C stops.".to_owned(),
+    });
+    monitored.run(&mut bench)?;
+    let status = bench.status()?;
+    let result = TrackedOutput {
+        played: Played::new(&status, false),
+        tracked: monitored
+            .play
+            .as_ref()
+            .map_or_else(Tracked::default, |play| {
+                Tracked::of(play, bench.camera_delay_s())
+            }),
+    };
+    bench.close()?;
+    match monitored.reason {
+        None => {}
+        Some(Reason::Operator) if status.cycles == 0 && interrupt.pressed() == CTRL_C => {}
+        Some(reason) => {
+            let cycles = status.cycle;
+            return print_refusal(output, &result, reason.after(cycles, interrupt));
+        }
+    }
+    output.print(&result);
+    Ok(())
+}
+
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a period of the command line: positive, minutes
+fn microseconds(seconds: f64) -> u32 {
+    (seconds * 1e6).round() as u32
+}
+
+/// Reason for the end of a play before its last cycle.
+enum Reason {
+    Operator,
+    Wall,
+    Lost(f64),
+    Robot(String),
+}
+
+impl Reason {
+    fn after(&self, cycles: u32, interrupt: &Interrupt) -> String {
+        let why = match self {
+            Self::Operator if interrupt.requested() => interrupt.pressed().to_owned(),
+            Self::Operator => "another process stopped it".to_owned(),
+            Self::Wall => "the robot came nearer to a wall than 10 mm".to_owned(),
+            Self::Lost(seconds) => {
+                format!("the robot was not seen for {seconds:.1} s; check the cameras")
+            }
+            Self::Robot(reason) => reason.clone(),
+        };
+        format!("{why}: the robot was stopped after {cycles} whole cycles")
+    }
+}
+
+fn interrupted(event: &Event) -> String {
+    match event {
+        Event::Interrupted(Interruption::Robot(reason) | Interruption::Link(reason)) => {
+            reason.clone()
+        }
+        _ => "the play was interrupted".to_owned(),
+    }
+}
+
+/// A play and what was reported of it.
+struct Monitored {
+    gait: GaitOnRobot,
+    cycles: u32,
+    walls: Option<TankWalls>,
+    play: Option<TrackedPlay>,
+    /// Cycles whose report was printed.
+    shown: usize,
+    reason: Option<Reason>,
+    output: Output,
+}
+
+impl Monitored {
+    /// Waits for the end of the play; stops the robot if it is lost, comes too near to a wall, or if the operator stops.
+    fn run(&mut self, bench: &mut Bench) -> Outcome {
+        let begun_s = bench.now_s();
+        loop {
+            for event in bench.advance()? {
+                match event {
+                    Event::Pose(pose) => {
+                        if let Some(play) = &mut self.play {
+                            play.pose(&pose);
+                        }
+                    }
+                    Event::Began(began_s) => {
+                        self.play = Some(TrackedPlay::new(
+                            bench.model(),
+                            self.walls,
+                            self.gait.clone(),
+                            std::iter::empty(),
+                            began_s,
+                            self.cycles,
+                        ));
+                    }
+                    Event::AtRest(_) => {
+                        if let Some(play) = self.play.as_mut().filter(|_| self.reason.is_none()) {
+                            play.at_rest();
+                        }
+                        self.show();
+                        return Ok(());
+                    }
+                    Event::Interrupted(Interruption::Operator) => {
+                        self.stop(bench, Reason::Operator)?;
+                    }
+                    Event::Interrupted(
+                        Interruption::Robot(reason) | Interruption::Link(reason),
+                    ) => {
+                        self.reason.get_or_insert(Reason::Robot(reason));
+                        return Ok(());
+                    }
+                }
+            }
+            self.show();
+            let now_s = bench.now_s();
+            let Some(play) = &self.play else { continue };
+            let blank_s = now_s - play.last_seen_s().unwrap_or(begun_s);
+            if play.is_outside() {
+                self.stop(bench, Reason::Wall)?;
+            } else if blank_s > LONGEST_BLANK_S {
+                self.stop(bench, Reason::Lost(blank_s))?;
+            }
+        }
+    }
+
+    /// Stops the robot once.
+    fn stop(&mut self, bench: &mut Bench, reason: Reason) -> Outcome {
+        if self.reason.is_some() {
+            return Ok(());
+        }
+        self.reason = Some(reason);
+        match bench.stop() {
+            Some(event) => Err(Failure::Tried(interrupted(&event))),
+            None => Ok(()),
+        }
+    }
+
+    /// Prints the cycles that have ended since, and departures when they are found.
+    fn show(&mut self) {
+        let Some(play) = &self.play else { return };
+        let reports = play.reports();
+        for index in self.shown..reports.len() {
+            let Some(report) = reports.get(index) else {
+                break;
+            };
+            self.output.line(&cycle_line(report));
+            if let Some(departure) = &report.departure {
+                let before = index
+                    .checked_sub(1)
+                    .and_then(|index| reports.get(index)?.departure.as_ref());
+                if before.is_none_or(|before| before.since != departure.since) {
+                    aside(&format!("warning: {}.", in_words(departure)));
+                }
+            }
+        }
+        self.shown = reports.len();
+    }
+}
+
+fn in_words(departure: &Departure) -> String {
+    format!(
+        "the robot departs from the prediction since cycle {}: {}",
+        departure.since + 1,
+        departure.likeness
+    )
+}
+
+fn cycle_line(report: &CycleReport) -> String {
+    let predicted = quantity::length(report.predicted.position().norm());
+    let number = report.cycle + 1;
+    match &report.measured {
+        Some(measured) => format!(
+            "cycle {number}: {} ± {}, predicted {predicted}",
+            quantity::length(measured.x_m.hypot(measured.y_m)),
+            quantity::length(measured.interval_m),
+        ),
+        None => format!("cycle {number}: an end was not seen, predicted {predicted}"),
+    }
+}
+
+/// Result of a tracked play.
+#[derive(Debug, Serialize)]
+struct TrackedOutput {
+    #[serde(flatten)]
+    played: Played,
+    tracked: Tracked,
+}
+
+/// Motion over the cycles that have ended, in the frame of the middle link at the start of the first.
+#[derive(Debug, Default, Serialize)]
+struct Tracked {
+    cycles: usize,
+    predicted: Option<Predicted>,
+    /// `null` if the start of the first cycle or the end of the last was not seen.
+    measured: Option<Measured>,
+    /// Delay of the cameras beyond the one that they state, as the play shows it; `null` if it does not.
+    camera_delay_s: Option<f64>,
+    /// Departures from the prediction, in words.
+    departures: Vec<String>,
+}
+
+#[derive(Debug, Serialize)]
+struct Predicted {
+    x_m: f64,
+    y_m: f64,
+    rotation_rad: f64,
+}
+
+/// Measured motion, with half widths of 95 % intervals.
+#[derive(Debug, Serialize)]
+struct Measured {
+    x_m: f64,
+    y_m: f64,
+    rotation_rad: f64,
+    interval_m: f64,
+    interval_rad: f64,
+}
+
+impl From<MeasuredMotion> for Measured {
+    fn from(motion: MeasuredMotion) -> Self {
+        Self {
+            x_m: motion.x_m,
+            y_m: motion.y_m,
+            rotation_rad: motion.turn_rad,
+            interval_m: motion.interval_m,
+            interval_rad: motion.interval_rad,
+        }
+    }
+}
+
+impl Tracked {
+    fn of(play: &TrackedPlay, camera_delay_s: Option<f64>) -> Self {
+        let reports = play.reports();
+        let mut departures: Vec<&Departure> = Vec::new();
+        for departure in reports
+            .iter()
+            .filter_map(|report| report.departure.as_ref())
+        {
+            // The last one of a row: its cause is known best.
+            match departures.last_mut() {
+                Some(last) if last.since == departure.since => *last = departure,
+                _ => departures.push(departure),
+            }
+        }
+        let predicted = play.predicted();
+        Self {
+            cycles: reports.len(),
+            predicted: Some(Predicted {
+                x_m: predicted.x,
+                y_m: predicted.y,
+                rotation_rad: predicted.theta,
+            }),
+            measured: play.measured().map(Measured::from),
+            camera_delay_s,
+            departures: departures.into_iter().map(in_words).collect(),
+        }
+    }
+}
+
+impl fmt::Display for TrackedOutput {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.played)?;
+        let tracked = &self.tracked;
+        if let Some(predicted) = &tracked.predicted {
+            write!(
+                f,
+                "\nPredicted over {} cycles: {} (x {}, y {}), turned by {}.",
+                tracked.cycles,
+                quantity::length(predicted.x_m.hypot(predicted.y_m)),
+                quantity::length(predicted.x_m),
+                quantity::length(predicted.y_m),
+                quantity::angle(predicted.rotation_rad),
+            )?;
+        }
+        match &tracked.measured {
+            Some(measured) => write!(
+                f,
+                "\nTracked: {} ± {} (x {}, y {}), turned by {} ± {}.",
+                quantity::length(measured.x_m.hypot(measured.y_m)),
+                quantity::length(measured.interval_m),
+                quantity::length(measured.x_m),
+                quantity::length(measured.y_m),
+                quantity::angle(measured.rotation_rad),
+                quantity::angle(measured.interval_rad),
+            )?,
+            None => f.write_str("\nTracked: the start or the end was not seen.")?,
+        }
+        for departure in &tracked.departures {
+            write!(f, "\n  note: {departure}")?;
+        }
+        Ok(())
+    }
+}
