@@ -9,6 +9,7 @@ mod chain;
 mod error;
 mod fourier;
 mod near;
+mod orders;
 
 use std::fmt;
 
@@ -27,6 +28,7 @@ use chain::{Origin, same_gait};
 pub use error::EfficiencyError;
 pub(crate) use fourier::{Expansion, Objective, Value, climb};
 pub use near::EfficiencySeed;
+pub use orders::efficiency_by_order;
 
 /// Branch of efficiency optima.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -109,7 +109,7 @@ pub use displacement::{
 };
 pub use efficiency::{
     Branch, Direct, EfficiencyError, EfficiencyProblem, EfficiencySeed, Method, ReachedBounds,
-    efficiency, efficiency_from,
+    efficiency, efficiency_by_order, efficiency_from,
 };
 pub use height_map::{
     AreaRule, Convergence, Frame, Grid, HeightMap, HeightMapError, LevelCurve, Row,

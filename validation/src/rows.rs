@@ -1,10 +1,15 @@
-//! Comparison of each number that the paper prints with the computed number. The printed numbers are in `printed.tsv`. A row
-//! without words is a number; one with words is a range from `least` to `most`. The column `within` has the tolerance, or `none`
-//! if the paper's number cannot be reproduced, for a reason that the note states.
+//! Comparison of each number and each statement of the paper with the computed number. They are in `printed.tsv`. The column
+//! `claim` distinguishes numbers that the paper prints from statements, such as "positive". A value without words is a number; one
+//! with words is a range from `least` to `most`. The column `within` has the tolerance, or `none` if the paper's number cannot be
+//! reproduced, for a reason that the note states.
 
+mod areas;
 mod computed;
 mod displacement;
 mod efficiency;
+mod fit;
+mod methods;
+mod switching;
 
 use serde::Serialize;
 
@@ -12,6 +17,16 @@ use super::study::Study;
 use computed::Computed;
 
 const PRINTED: &str = include_str!("rows/printed.tsv");
+
+/// Kind of a row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Claim {
+    /// The paper prints a number or a range of numbers.
+    Number,
+    /// The paper states a property without a number.
+    Statement,
+}
 
 /// Value printed in the paper.
 #[derive(Debug, Clone, Copy, Serialize)]
@@ -41,12 +56,19 @@ pub struct Row {
     /// Explanation of what the paper leaves open; may be empty.
     #[serde(skip_serializing_if = "str::is_empty")]
     pub note: &'static str,
+    /// Printed number or statement.
+    pub claim: Claim,
 }
 
 impl Row {
     /// Compares a line of the table with the computed value. Returns `None` if the line is malformed.
     fn new(line: &'static str, ours: f64) -> Option<Self> {
-        let [id, quantity, paper, least, most, within, note] = cells(line)?;
+        let [id, claim, quantity, paper, least, most, within, note] = cells(line)?;
+        let claim = match claim {
+            "number" => Claim::Number,
+            "statement" => Claim::Statement,
+            _ => return None,
+        };
         let (printed, low, high) = match paper.parse() {
             Ok(number) => (Printed::Number(number), number, number),
             Err(_) => (
@@ -75,12 +97,44 @@ impl Row {
             deviation,
             pass,
             note,
+            claim,
         })
     }
 }
 
+/// Counts of rows by outcome.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Tally {
+    /// Rows that agree with the paper.
+    pub reproduced: usize,
+    /// Rows that differ from it.
+    pub differ: usize,
+    /// Rows that cannot be compared, each with its reason.
+    pub open: usize,
+}
+
+impl Tally {
+    /// Counts the rows of one kind.
+    pub fn of(rows: &[Row], claim: Claim) -> Self {
+        let count = |pass: Option<bool>| {
+            let counted = |row: &&Row| row.claim == claim && row.pass == pass;
+            rows.iter().filter(counted).count()
+        };
+        Self {
+            reproduced: count(Some(true)),
+            differ: count(Some(false)),
+            open: count(None),
+        }
+    }
+
+    /// Number of rows.
+    pub fn total(&self) -> usize {
+        self.reproduced + self.differ + self.open
+    }
+}
+
 /// Splits a line of the table into its cells.
-fn cells(line: &'static str) -> Option<[&'static str; 7]> {
+fn cells(line: &'static str) -> Option<[&'static str; 8]> {
     let cells: Vec<_> = line.split('\t').collect();
     cells.try_into().ok()
 }
@@ -90,11 +144,16 @@ pub fn rows(study: &Study) -> Vec<Row> {
     let ours: Vec<Computed> = [
         displacement::robot_data(study),
         displacement::experiments(study),
+        fit::fit(study),
         displacement::simple_displacement(study),
+        switching::switching_function(study),
         displacement::displacement_gaits(study),
+        areas::enclosed_areas(study),
         displacement::height_maps(study),
         efficiency::simple_efficiency(study),
         efficiency::lighthill_gaits(study),
+        methods::three_methods(study),
+        methods::orders_of_fourier_series(study),
         efficiency::appendices(study),
     ]
     .concat();
@@ -112,7 +171,7 @@ mod tests {
 
     /// The row of a line with these four cells.
     fn row(paper: &str, least: &str, most: &str, within: &str, ours: f64) -> Row {
-        let line = format!("id\tquantity\t{paper}\t{least}\t{most}\t{within}\t");
+        let line = format!("id\tnumber\tquantity\t{paper}\t{least}\t{most}\t{within}\t");
         Row::new(line.leak(), ours).unwrap()
     }
 

@@ -2,8 +2,8 @@
 
 use gait_optimizer::{
     BestAmplitude, Bounds, Branch, DisplacementError, DisplacementProblem, EfficiencyProblem,
-    Heading, HeightMap, HeightMapError, Objective, OptimalGait, SimpleShape, best_amplitudes,
-    displacement, efficiency,
+    Heading, HeightMap, HeightMapError, Method, Objective, OptimalGait, SimpleShape,
+    best_amplitudes, displacement, efficiency, efficiency_by_order,
 };
 use swimmer_model::{InvalidSwimmer, Model, Stroke, Swimmer};
 
@@ -51,6 +51,21 @@ pub struct Lighthill {
     pub small: OptimalGait,
     /// Large gait, X < 0.
     pub large: OptimalGait,
+    /// ξ of the small and of the large gait by other methods.
+    pub others: [OtherMethods; 2],
+}
+
+/// ξ of a Lighthill gait by methods other than shooting from a series of low order.
+#[derive(Debug, Clone)]
+pub struct OtherMethods {
+    /// Direct collocation alone.
+    pub collocation: f64,
+    /// Fourier series alone, of the order at which it has converged.
+    pub fourier: f64,
+    /// Collocation's gait after the polish by shooting.
+    pub polished: f64,
+    /// Fourier series of orders 1, 2 and 3.
+    pub orders: Vec<f64>,
 }
 
 /// Computed results of the paper.
@@ -207,9 +222,41 @@ impl Lighthill {
                 &format!("the {branch} Lighthill gait of {name}"),
             )
         };
+        let others = |branch: Branch| OtherMethods::of(swimmer, branch, name);
         Ok(Self {
             small: gait(Branch::Small)?,
             large: gait(Branch::Large)?,
+            others: [others(Branch::Small)?, others(Branch::Large)?],
+        })
+    }
+}
+
+/// Highest order of the series in the table.
+const HIGHEST_ORDER: usize = 3;
+
+impl OtherMethods {
+    fn of(swimmer: &Swimmer<f64>, branch: Branch, name: &str) -> Result<Self, StudyError> {
+        let problem = EfficiencyProblem::new(*swimmer, branch);
+        let by_fourier = EfficiencyProblem {
+            method: Method::Fourier,
+            ..problem
+        };
+        let called = |method: &str| format!("the {branch} Lighthill gait of {name} by {method}");
+        let collocated = found(collocation::efficiency(&problem), &called("collocation"))?;
+        let fourier = found(efficiency(&by_fourier), &called("Fourier series"))?;
+        let direct = |gait: &OptimalGait| {
+            let figures = gait.efficiency_figures;
+            let direct = figures.and_then(|figures| figures.direct_efficiency);
+            direct.unwrap_or(f64::NAN)
+        };
+        Ok(Self {
+            collocation: direct(&collocated),
+            fourier: direct(&fourier),
+            polished: collocated.efficiency,
+            orders: found(
+                efficiency_by_order(&problem, HIGHEST_ORDER),
+                &called("Fourier series of low order"),
+            )?,
         })
     }
 }

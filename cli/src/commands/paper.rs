@@ -5,12 +5,12 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 use swimmer_files::write_atomically;
-use validation::{Row, Study, rows};
+use validation::{Claim, Row, Study, Tally, rows};
 
 use crate::failure::{Failure, Outcome};
 use crate::new_folder::NewFolder;
 use crate::output::Output;
-use crate::paper::{deviation, figures, number, page, printed};
+use crate::paper::{deviation, figures, number, open, page, printed};
 use crate::progress::Progress;
 use crate::quantity::Table;
 use crate::raster::png;
@@ -32,6 +32,10 @@ struct PaperOutput {
     /// The page that was written.
     #[serde(skip_serializing_if = "Option::is_none")]
     page: Option<PathBuf>,
+    /// Rows with a printed number.
+    numbers: Tally,
+    /// Rows with a statement.
+    statements: Tally,
 }
 
 const PAGE: &str = "index.html";
@@ -70,6 +74,8 @@ impl Paper {
         });
         drop(progress);
         output.print(&PaperOutput {
+            numbers: Tally::of(&rows, Claim::Number),
+            statements: Tally::of(&rows, Claim::Statement),
             rows,
             page: written,
         });
@@ -84,7 +90,7 @@ impl fmt::Display for PaperOutput {
             let verdict = match row.pass {
                 Some(true) => "ok",
                 Some(false) => "DIFFERS",
-                None => "not reproducible",
+                None => open(row),
             };
             table.line([
                 row.quantity.to_owned(),
@@ -98,6 +104,27 @@ impl fmt::Display for PaperOutput {
         for row in self.rows.iter().filter(|row| row.pass.is_none()) {
             write!(f, "\n  {}: {}", row.id, row.note)?;
         }
+        let Self {
+            numbers,
+            statements,
+            ..
+        } = self;
+        write!(
+            f,
+            "\n  {} printed numbers: {} reproduced, {} differ, {} not reproducible",
+            numbers.total(),
+            numbers.reproduced,
+            numbers.differ,
+            numbers.open
+        )?;
+        write!(
+            f,
+            "\n  {} statements: {} hold, {} differ, {} that cannot be compared",
+            statements.total(),
+            statements.reproduced,
+            statements.differ,
+            statements.open
+        )?;
         if let Some(page) = &self.page {
             write!(f, "\n  written to {}", page.display())?;
         }

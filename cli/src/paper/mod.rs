@@ -4,4 +4,4 @@ mod figures;
 mod page;
 
 pub(crate) use figures::{Figure, figures};
-pub(crate) use page::{deviation, number, page, printed};
+pub(crate) use page::{deviation, number, open, page, printed};

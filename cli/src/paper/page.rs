@@ -1,7 +1,7 @@
 //! Table and figures as one self-contained HTML page.
 
 use askama::Template;
-use validation::{Printed, Row};
+use validation::{Claim, Printed, Row, Tally};
 
 use super::Figure;
 use crate::failure::Outcome;
@@ -11,6 +11,8 @@ use crate::report::written;
 #[template(path = "paper/page.html")]
 struct Page<'a> {
     rows: &'a [Row],
+    numbers: Tally,
+    statements: Tally,
     /// Each with its drawing.
     figures: Vec<(&'a Figure, String)>,
 }
@@ -23,14 +25,10 @@ pub(crate) fn page(rows: &[Row], figures: &[Figure]) -> Outcome<String> {
     let drawn = figures.iter().map(|figure| Ok((figure, figure.svg()?)));
     written(&Page {
         rows,
+        numbers: Tally::of(rows, Claim::Number),
+        statements: Tally::of(rows, Claim::Statement),
         figures: drawn.collect::<Outcome<_>>()?,
     })
-}
-
-impl Page<'_> {
-    fn count(&self, pass: Option<bool>) -> usize {
-        self.rows.iter().filter(|row| row.pass == pass).count()
-    }
 }
 
 /// The paper's number as a person reads it.
@@ -50,6 +48,14 @@ pub(crate) fn number(value: f64) -> String {
             .to_owned()
     } else {
         format!("{value:.1e}")
+    }
+}
+
+/// Words for a row that cannot be compared.
+pub(crate) fn open(row: &Row) -> &'static str {
+    match row.paper {
+        Printed::Number(_) => "not reproducible",
+        Printed::Words(_) => "no number printed",
     }
 }
 

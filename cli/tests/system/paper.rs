@@ -32,6 +32,19 @@ fn every_number_of_the_paper() {
         }
     }
     assert!(open * 10 <= rows.len(), "{open} of {}", rows.len());
+    // Numbers that the paper prints are counted apart from its statements, which have none.
+    for (kind, claim) in [("numbers", "number"), ("statements", "statement")] {
+        let of_kind: Vec<_> = rows.iter().filter(|row| row["claim"] == claim).collect();
+        let passed = of_kind.iter().filter(|row| row["pass"] == true).count();
+        let tally = &document[kind];
+        assert_eq!(tally["reproduced"], passed, "{tally}");
+        assert_eq!(tally["differ"], 0, "{tally}");
+        assert_eq!(tally["open"], of_kind.len() - passed, "{tally}");
+    }
+    for row in rows.iter().filter(|row| row["claim"] == "number") {
+        let paper = row["paper"].to_string();
+        assert!(paper.contains(|c: char| c.is_ascii_digit()), "{row}");
+    }
     // The ratios by name.
     for (id, paper) in [
         ("displacement.c_over_b", 1.55),

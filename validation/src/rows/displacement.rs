@@ -37,6 +37,8 @@ pub(super) fn experiments(study: &Study) -> Vec<Computed> {
     vec![
         ("circle70.lateral", circle.displacement_over_length().y),
         ("circle70.rotation", circle.rotation),
+        ("circle70.delta_y", 1e3 * circle.delta_y),
+        ("circle70.delta_theta", circle.delta_theta.to_degrees()),
         ("sinusoid.magnitude", printed.abs()),
         ("sinusoid.sign", printed),
         (
