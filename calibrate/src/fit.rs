@@ -351,12 +351,13 @@ impl CampaignFit {
             start,
             runs,
             swimmer,
+            known,
             ..
         } = self;
         Ok(RunModel::of_runs(
             start,
             runs,
-            swimmer,
+            (swimmer, known.tank.as_ref()),
             data.scales,
             parameters,
         )?)

@@ -81,6 +81,7 @@ mod run;
 mod sides;
 pub mod student;
 pub mod tracks;
+mod walls;
 mod wrong_gait;
 
 pub use advice::{Advice, Candidate, advise};

@@ -40,11 +40,13 @@ pub enum NuisanceParameter {
     Tilt,
     /// Distortion of the lens.
     Distortion,
+    /// Effect of the tank's walls.
+    Walls,
 }
 
 impl NuisanceParameter {
     /// All of them.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::TangentialDrag,
         Self::JointOffsets,
         Self::DeadBand,
@@ -56,6 +58,7 @@ impl NuisanceParameter {
         Self::Float,
         Self::Tilt,
         Self::Distortion,
+        Self::Walls,
     ];
 
     /// Name on the command line: `swimmer calibrate --fit-also`.
@@ -72,6 +75,7 @@ impl NuisanceParameter {
             Self::Float => "float",
             Self::Tilt => "tilt",
             Self::Distortion => "distortion",
+            Self::Walls => "walls",
         }
     }
 
@@ -104,6 +108,7 @@ impl NuisanceParameter {
             Self::Float => &[Parameter::FloatTurning],
             Self::Tilt => &[Parameter::StretchSquare, Parameter::StretchDiagonal],
             Self::Distortion => &[Parameter::Distortion],
+            Self::Walls => &[Parameter::WallEffect],
         }
     }
 }
@@ -242,13 +247,14 @@ pub fn fit_nuisance(
                 | NuisanceParameter::Gains
                 | NuisanceParameter::Lengths
                 | NuisanceParameter::Tilt
+                | NuisanceParameter::Walls
         )
     }) {
         data = data.with_all();
     }
     let plain = found.model(&data, plain)?;
     if let Some(idle) = parameters.iter().find(|p| !plain.has_use_for(**p)) {
-        if idle.is_of_view() {
+        if idle.is_of_view() || *idle == Parameter::WallEffect {
             return Err(FitError::Undetermined {
                 parameters: idle.name().to_owned(),
             });

@@ -68,6 +68,19 @@ pub struct PredictedCycle {
     pub delta_theta_rad: f64,
 }
 
+impl PredictedCycle {
+    /// Adds this share of a change.
+    pub(crate) fn changed(self, change: &Self, share: f64) -> Self {
+        Self {
+            x_m: self.x_m + share * change.x_m,
+            y_m: self.y_m + share * change.y_m,
+            rotation_rad: self.rotation_rad + share * change.rotation_rad,
+            delta_y_m: self.delta_y_m + share * change.delta_y_m,
+            delta_theta_rad: self.delta_theta_rad + share * change.delta_theta_rad,
+        }
+    }
+}
+
 /// Predicts one cycle in steady state, with the servos of the file if it has any.
 ///
 /// # Errors
@@ -332,6 +345,8 @@ pub(crate) struct Played {
     pub(crate) cut_by: Option<Harmonics>,
     /// Direction and place of its cycles, if it was tracked.
     pub(crate) view: Option<View>,
+    /// Change of its cycle by the tank's walls to first order, if the tank is known.
+    pub(crate) walls: Option<PredictedCycle>,
     /// Measured angles of `path`, if reflectors showed it: it is valid for its cycles as they were cut, and the servo model is
     /// not used.
     pub(crate) sides: Option<Sides>,
@@ -353,6 +368,7 @@ impl Played {
             path: JointPath::new(gait, servo, period_s)?,
             cut_by: None,
             view: None,
+            walls: None,
             sides: None,
         })
     }

@@ -6,6 +6,7 @@ mod raw;
 mod read;
 mod reported;
 mod table;
+mod tank;
 
 use std::path::{Path, PathBuf};
 
@@ -13,6 +14,7 @@ use crate::file_error::read_text;
 use crate::{Axes, FileError, GaitSpec, SwimmerFile};
 pub use known::{Known, KnownValue};
 pub use reported::{ReportedResults, ReportedValue};
+pub use tank::{TankWalls, WallPlane};
 
 /// A campaign, with its swimmer read and its paths resolved.
 ///

@@ -53,7 +53,7 @@ pub use atomic::{stream_atomically, write_atomically};
 pub use axes::Axes;
 pub use campaign::{
     Campaign, CampaignRun, Known, KnownValue, PointName, Reflector, Reflectors, ReportedResults,
-    ReportedValue, RigidBody, RunTiming, TrackSettings,
+    ReportedValue, RigidBody, RunTiming, TankWalls, TrackSettings, WallPlane,
 };
 pub use file_error::FileError;
 pub use gait_file::{ArcKind, Bounds, GaitArc, GaitFile, Objective};

@@ -32,7 +32,7 @@ const MILLIMETRE: f64 = 1e-3;
 const PERCENT: f64 = 0.01;
 
 /// Assumptions of the budget, each with the size of its error.
-const LINES: [(Parameter, f64); 18] = [
+const LINES: [(Parameter, f64); 19] = [
     (Parameter::Gain, PERCENT),
     (Parameter::Scale, PERCENT),
     (Parameter::MarkerAlong, MILLIMETRE),
@@ -51,6 +51,7 @@ const LINES: [(Parameter, f64); 18] = [
     (Parameter::FloatTurning, PERCENT),
     (Parameter::StretchSquare, PERCENT),
     (Parameter::Distortion, PERCENT),
+    (Parameter::WallEffect, 0.1),
 ];
 
 /// The budget of the estimate of greatest likelihood.

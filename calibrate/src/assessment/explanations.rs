@@ -11,7 +11,7 @@ use crate::fit::run_model::RunModel;
 use crate::fit::tangent::Tangent;
 
 /// Explanations that are tried: name, parameters, and starts relative to the files.
-const TRIED: [(&str, &[Parameter], &[f64]); 15] = [
+const TRIED: [(&str, &[Parameter], &[f64]); 16] = [
     ("gain", &[Parameter::Gain], &[]),
     (
         "gain of each servo",
@@ -59,6 +59,7 @@ const TRIED: [(&str, &[Parameter], &[f64]); 15] = [
         &[],
     ),
     ("lens distortion", &[Parameter::Distortion], &[]),
+    ("tank's walls", &[Parameter::WallEffect], &[]),
 ];
 
 /// Growth of the log-likelihood along a tangent from which on an explanation is followed by the model itself.

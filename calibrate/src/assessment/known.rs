@@ -18,6 +18,8 @@ const SCALE: f64 = 0.002;
 /// centre, where the campaign says nothing.
 const STRETCH: f64 = 0.001;
 const DISTORTION: f64 = 0.003;
+/// Effect of the walls of a tank that the campaign states, over that of first order: higher orders of radius over distance.
+const WALL_EFFECT: f64 = 0.3;
 
 /// Prior of one parameter.
 #[derive(Debug, Clone, Copy)]
@@ -47,31 +49,8 @@ pub(super) fn priors(found: &CampaignFit, model: &RunModel) -> Vec<Known> {
     // Both reflectors are placed as well as their middle, to an unknown factor.
     let angle = usual(0.0, std::f64::consts::SQRT_2 * reflector / distance);
     let links = Some(usual(0.0, LINKS));
-    let of = |parameter: Parameter, stated: Option<KnownValue>, usual: Option<KnownValue>| {
-        let KnownValue { value, width } = stated.or(usual)?;
-        let (centre, unit) = match parameter {
-            Parameter::Gain
-            | Parameter::Scale
-            | Parameter::Period
-            | Parameter::StretchSquare
-            | Parameter::StretchDiagonal
-            | Parameter::Distortion => (value - 1.0, 1.0),
-            Parameter::TangentialDrag | Parameter::FloatTurning => (value.ln(), value),
-            Parameter::MarkerAlong
-            | Parameter::MarkerAcross
-            | Parameter::MiddleLength
-            | Parameter::FrontLength
-            | Parameter::BackLength => (value / length, length),
-            _ => (value, 1.0),
-        };
-        (width > 0.0).then_some(Known {
-            prior: Prior {
-                parameter,
-                value: centre,
-                width: width / unit,
-            },
-            stated: stated.is_some(),
-        })
+    let of = |parameter, stated: Option<KnownValue>, usual| {
+        known_of(parameter, stated.or(usual)?, stated.is_some(), length)
     };
     [
         of(Parameter::Gain, known.gain, Some(usual(1.0, GAIN))),
@@ -125,9 +104,42 @@ pub(super) fn priors(found: &CampaignFit, model: &RunModel) -> Vec<Known> {
             known.lens_distortion,
             Some(usual(1.0, DISTORTION)),
         ),
+        of(
+            Parameter::WallEffect,
+            known.wall_effect,
+            known.tank.map(|_| usual(1.0, WALL_EFFECT)),
+        ),
     ]
     .into_iter()
     .flatten()
     .filter(|known| model.has_use_for(known.prior.parameter))
     .collect()
+}
+
+/// Prior of a parameter in the fit's units; `None` without a width. `length` is L \[m\].
+fn known_of(parameter: Parameter, known: KnownValue, stated: bool, length: f64) -> Option<Known> {
+    let KnownValue { value, width } = known;
+    let (centre, unit) = match parameter {
+        Parameter::Gain
+        | Parameter::Scale
+        | Parameter::Period
+        | Parameter::StretchSquare
+        | Parameter::StretchDiagonal
+        | Parameter::Distortion => (value - 1.0, 1.0),
+        Parameter::TangentialDrag | Parameter::FloatTurning => (value.ln(), value),
+        Parameter::MarkerAlong
+        | Parameter::MarkerAcross
+        | Parameter::MiddleLength
+        | Parameter::FrontLength
+        | Parameter::BackLength => (value / length, length),
+        _ => (value, 1.0),
+    };
+    (width > 0.0).then_some(Known {
+        prior: Prior {
+            parameter,
+            value: centre,
+            width: width / unit,
+        },
+        stated,
+    })
 }

@@ -55,6 +55,8 @@ pub(crate) enum Parameter {
     StretchDiagonal,
     /// Distortion of the lens: stretch at the runs' mean distance from their centre.
     Distortion,
+    /// Effect of the tank's walls over that of first order.
+    WallEffect,
 }
 
 impl Parameter {
@@ -80,6 +82,7 @@ impl Parameter {
             Self::MiddleLength | Self::FrontLength | Self::BackLength => (-0.05, 0.05),
             Self::FloatTurning => (-(10_f64.ln()), 10_f64.ln()),
             Self::StretchSquare | Self::StretchDiagonal => (-0.1, 0.1),
+            Self::WallEffect => (-5.0, 5.0),
             Self::DeadBand => (0.0, 0.35),
             Self::FrontLag => (-1.0, 1.0),
             Self::MarkerAlong | Self::MarkerAcross => (-reach, reach),
@@ -152,6 +155,7 @@ impl Parameter {
             Self::StretchSquare => "camera stretch along x",
             Self::StretchDiagonal => "camera stretch diagonal",
             Self::Distortion => "lens distortion",
+            Self::WallEffect => "wall effect",
         }
     }
 
@@ -201,7 +205,8 @@ impl Parameter {
             | Self::MarkerAngle
             | Self::FrontLink
             | Self::BackLink
-            | Self::FrontLag => value,
+            | Self::FrontLag
+            | Self::WallEffect => value,
         }
     }
 }

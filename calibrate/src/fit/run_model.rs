@@ -6,7 +6,7 @@
 use std::borrow::Cow;
 
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
-use swimmer_files::{ServoFile, SwimmerFile};
+use swimmer_files::{ServoFile, SwimmerFile, TankWalls};
 use swimmer_model::{InvalidSwimmer, Model as SwimmerModel, Pose, TangentialDrag};
 
 use super::parameter::{Parameter, over_viscosity};
@@ -15,6 +15,7 @@ use crate::least_squares::Model;
 use crate::prediction::{JointPath, Observation, Played, PredictedCycle, SwumCycle, View};
 use crate::quantities::{QUANTITIES, predicted};
 use crate::run::RunResult;
+use crate::walls;
 
 /// Runs that swam nearer to each other than this \[m\] do not determine a lens.
 const SAME_PLACE: f64 = 0.02;
@@ -48,14 +49,20 @@ impl RunModel {
     pub(crate) fn of_runs(
         start: &SwimmerFile,
         runs: &[RunResult],
-        fitted: &SwimmerFile,
+        (fitted, tank): (&SwimmerFile, Option<&TankWalls>),
         scales: [f64; QUANTITIES],
         parameters: Vec<Parameter>,
     ) -> Result<Self, InvalidSwimmer> {
         let projection = Projection::new();
         let views = views(runs);
         let played = |(run, view): (&RunResult, Option<View>)| {
+            // Walls change little: the fitted swimmer serves for all.
+            let own = View::of(&run.cycles);
+            let near = tank.zip(own).and_then(|(tank, own)| {
+                walls::change(&fitted.swimmer, &run.played.gait, tank, &own)
+            });
             let played = Played {
+                walls: near,
                 view,
                 ..run.played.clone()
             };
@@ -93,11 +100,13 @@ impl RunModel {
     pub(crate) fn has_use_for(&self, parameter: Parameter) -> bool {
         let measured = |run: &Played| run.sides.is_some();
         let view = |run: &Played| run.view.is_some();
+        let near_walls = |run: &Played| run.walls.is_some();
         let apart = |run: &Played| run.view.is_some_and(|view| view.place != Vector2::zeros());
         !(parameter.is_of_command() && self.runs.iter().all(measured)
             || parameter.is_of_side_links() && !self.runs.iter().any(measured)
             || parameter.is_of_view() && !self.runs.iter().all(view)
-            || parameter == Parameter::Distortion && !self.runs.iter().any(apart))
+            || parameter == Parameter::Distortion && !self.runs.iter().any(apart)
+            || parameter == Parameter::WallEffect && !self.runs.iter().any(near_walls))
     }
 
     /// The same model with ideal servos.
@@ -234,6 +243,7 @@ impl RunModel {
             .parameters
             .iter()
             .any(|parameter| parameter.is_of_view());
+        let wall_effect = or_none(Parameter::WallEffect);
         let marker = self.marker(at);
         let see = |(run, swum): (&Played, &SwumCycle)| {
             let view = run.view.filter(|_| is_viewed);
@@ -243,6 +253,10 @@ impl RunModel {
                     .map_or_else(Matrix2::identity, |view| view.stretch(cameras, distortion)),
             };
             let cycle = swum.as_cut(&self.projection, &seen, run.cut_by.as_ref());
+            let cycle = match &run.walls {
+                Some(change) => cycle.changed(change, wall_effect),
+                None => cycle,
+            };
             PredictedCycle {
                 x_m: scale * cycle.x_m,
                 y_m: scale * cycle.y_m,
@@ -263,7 +277,9 @@ impl RunModel {
                 | Parameter::Scale
         );
         let measured = |run: &Played| run.sides.is_some();
-        parameter.is_of_view() || of_marker && !self.runs.iter().any(measured)
+        parameter.is_of_view()
+            || parameter == Parameter::WallEffect
+            || of_marker && !self.runs.iter().any(measured)
     }
 
     /// The derivative of all values by one parameter; `swum` are the poses of this point, if they are known.

@@ -80,7 +80,7 @@ fn stroke(body: &Body, gait: Loop) -> f64 {
         max_rate: 1e9,
         ..Joint::EXACT
     };
-    let states = lab::swim::swim(body, &[exact; 2], &play, 1.0, 400.0, [0.0; 3]);
+    let states = lab::swim::swim(body, &[exact; 2], &play, (1.0, None), 400.0, [0.0; 3]);
     let (from, until) = (states[12 * 400], states[22 * 400]);
     let (dx, dy) = (until[0] - from[0], until[1] - from[1]);
     // Along the heading at the symmetric shape.
@@ -149,7 +149,14 @@ fn a_joint_is_what_it_says() {
         lag_s: 0.5,
         ..Joint::EXACT
     };
-    let states = lab::swim::swim(&Body::ROBOT, &[joint; 2], &play, 1.0, 100.0, [0.0; 3]);
+    let states = lab::swim::swim(
+        &Body::ROBOT,
+        &[joint; 2],
+        &play,
+        (1.0, None),
+        100.0,
+        [0.0; 3],
+    );
     let last_cycle = &states[states.len() - 1200..states.len() - 150];
     let reach = |sign: f64| {
         last_cycle

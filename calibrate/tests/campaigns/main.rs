@@ -36,4 +36,5 @@ mod tracks_rates;
 mod tracks_tables;
 mod twin_campaigns;
 mod unusual_campaigns;
+mod walls;
 mod writers;

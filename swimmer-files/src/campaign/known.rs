@@ -5,6 +5,7 @@ use std::str::FromStr;
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::tank::{RawTank, TankWalls, tank};
 use crate::FileError;
 
 /// A value and its standard deviation.
@@ -75,6 +76,10 @@ pub struct Known {
     pub camera_stretch: Option<KnownValue>,
     /// `lens_distortion`: stretch of lengths at the runs' mean distance from their centre over that at their centre.
     pub lens_distortion: Option<KnownValue>,
+    /// `tank`: its walls.
+    pub tank: Option<TankWalls>,
+    /// `wall_effect`: over that of first order by the tank's walls.
+    pub wall_effect: Option<KnownValue>,
 }
 
 #[derive(Default, Deserialize)]
@@ -92,6 +97,8 @@ pub(super) struct RawKnown {
     float_turning: Option<Spanned<String>>,
     camera_stretch: Option<Spanned<String>>,
     lens_distortion: Option<Spanned<String>>,
+    tank: Option<Spanned<RawTank>>,
+    wall_effect: Option<Spanned<String>>,
 }
 
 pub(super) fn known(
@@ -115,6 +122,10 @@ pub(super) fn known(
             known => Ok(known),
         }
     };
+    let walls = raw.tank.map(|raw| {
+        let place = raw.span().start;
+        tank(raw.get_ref()).map_err(|problem| error(place, problem))
+    });
     let (millimetre, degree) = (1e-3, 1.0_f64.to_radians());
     Ok(Known {
         gain: ratio(raw.gain, "gain")?,
@@ -129,6 +140,8 @@ pub(super) fn known(
         float_turning: ratio(raw.float_turning, "float_turning")?,
         camera_stretch: ratio(raw.camera_stretch, "camera_stretch")?,
         lens_distortion: ratio(raw.lens_distortion, "lens_distortion")?,
+        tank: walls.transpose()?,
+        wall_effect: read(raw.wall_effect, "wall_effect", 1.0)?,
     })
 }
 

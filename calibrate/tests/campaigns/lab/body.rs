@@ -4,6 +4,8 @@
 //! normal and angular velocity, which are linear in (ẋ, ẏ, θ̇, φ̇₁, φ̇₂), to one resistance of five by five. Its first three rows
 //! say that force and torque vanish. Resistances are in units of 2πμ.
 
+use super::walls;
+
 /// Three links and a sphere.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Body {
@@ -99,29 +101,22 @@ impl Body {
     }
 
     pub(crate) fn connection(&self, phi: [f64; 2]) -> Connection {
-        let k = self.resistance(phi);
-        // Gauss' elimination of a symmetric positive matrix needs no pivots.
-        let mut rows: [[f64; 5]; 3] = [k[0], k[1], k[2]];
-        for pivot in 0..3 {
-            for below in pivot + 1..3 {
-                let factor = rows[below][pivot] / rows[pivot][pivot];
-                let from = rows[pivot];
-                for (entry, value) in rows[below].iter_mut().zip(from) {
-                    *entry -= factor * value;
-                }
-            }
+        balanced(&self.resistance(phi))
+    }
+
+    /// At a pose in a tank of this size about the origin.
+    pub(crate) fn connection_in(
+        &self,
+        phi: [f64; 2],
+        pose: [f64; 3],
+        size: [f64; 2],
+    ) -> Connection {
+        let mut k = self.resistance(phi);
+        let change = walls::change(self, phi, pose, size);
+        for (entry, more) in k.iter_mut().flatten().zip(change.into_iter().flatten()) {
+            *entry += more;
         }
-        let mut a = [[0.0; 2]; 3];
-        for joint in 0..2 {
-            for row in (0..3).rev() {
-                let mut rest = -rows[row][3 + joint];
-                for known in row + 1..3 {
-                    rest -= rows[row][known] * a[known][joint];
-                }
-                a[row][joint] = rest / rows[row][row];
-            }
-        }
-        a
+        balanced(&k)
     }
 
     /// The power of two sets of joint rates, which makes W.
@@ -138,4 +133,30 @@ impl Body {
             .map(|(i, j)| v[i] * k[i][j] * w[j])
             .sum()
     }
+}
+
+/// Motion without force and torque.
+fn balanced(k: &[[f64; 5]; 5]) -> Connection {
+    // Gauss' elimination of a symmetric positive matrix needs no pivots.
+    let mut rows: [[f64; 5]; 3] = [k[0], k[1], k[2]];
+    for pivot in 0..3 {
+        for below in pivot + 1..3 {
+            let factor = rows[below][pivot] / rows[pivot][pivot];
+            let from = rows[pivot];
+            for (entry, value) in rows[below].iter_mut().zip(from) {
+                *entry -= factor * value;
+            }
+        }
+    }
+    let mut a = [[0.0; 2]; 3];
+    for joint in 0..2 {
+        for row in (0..3).rev() {
+            let mut rest = -rows[row][3 + joint];
+            for known in row + 1..3 {
+                rest -= rows[row][known] * a[known][joint];
+            }
+            a[row][joint] = rest / rows[row][row];
+        }
+    }
+    a
 }

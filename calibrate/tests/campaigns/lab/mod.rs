@@ -9,6 +9,7 @@ pub(crate) mod body;
 pub(crate) mod cameras;
 pub(crate) mod files;
 pub(crate) mod swim;
+pub(crate) mod walls;
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -66,6 +67,10 @@ pub(crate) struct Lab {
     pub(crate) named: bool,
     /// `true` if a flash marks the starts of cycles.
     pub(crate) flash: bool,
+    /// Inner measures of the tank about the origin, if its walls act on the swimmer \[m\].
+    pub(crate) walls: Option<[f64; 2]>,
+    /// `true` if the campaign states them.
+    pub(crate) walls_stated: bool,
     pub(crate) seed: u64,
 }
 
@@ -92,6 +97,8 @@ impl Lab {
             known_servo: None,
             named: true,
             flash: false,
+            walls: None,
+            walls_stated: false,
             seed,
         }
     }
@@ -157,7 +164,7 @@ impl Lab {
             &self.body,
             &self.joints,
             &self.play(run),
-            run.wall,
+            (run.wall, self.walls),
             self.cameras.rate_hz,
             run.start,
         )
@@ -221,6 +228,10 @@ impl Lab {
         if self.places.sides.is_some() {
             reflector("front_link", "FrontLink", SIDE_PLACE);
             reflector("back_link", "BackLink", SIDE_PLACE);
+        }
+        if let (Some([x, y]), true) = (self.walls, self.walls_stated) {
+            writeln!(out, "[known]\ntank = {{ size = [{x:?}, {y:?}] }}")
+                .expect("a String takes all");
         }
         for (index, run) in self.runs.iter().enumerate() {
             write!(

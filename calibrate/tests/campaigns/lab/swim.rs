@@ -102,12 +102,12 @@ impl Play {
 /// Pose and joint angles at a frame: x, y \[m\], θ, φ₁, φ₂ \[rad\].
 pub(crate) type State = [f64; 5];
 
-/// Swims a play; `wall` multiplies every translation. States at `rate_hz`.
+/// Swims a play; `wall` multiplies every translation, and walls of a tank of the given size act by their images. States at `rate_hz`.
 pub(crate) fn swim(
     body: &Body,
     joints: &[Joint; 2],
     play: &Play,
-    wall: f64,
+    (wall, tank): (f64, Option<[f64; 2]>),
     rate_hz: f64,
     start: [f64; 3],
 ) -> Vec<State> {
@@ -116,8 +116,12 @@ pub(crate) fn swim(
     let pieces = (frame_s * 500.0 / play.period_s).ceil().max(1.0);
     let dt = frame_s / pieces;
     let mut phi = wanted(joints, play, 0.0);
-    let mut connection = body.connection(phi);
+    let connection_at = |phi: [f64; 2], pose: [f64; 3]| match tank {
+        Some(size) => body.connection_in(phi, pose, size),
+        None => body.connection(phi),
+    };
     let mut pose = start;
+    let mut connection = connection_at(phi, pose);
     let state = |pose: [f64; 3], phi: [f64; 2]| [pose[0], pose[1], pose[2], phi[0], phi[1]];
     let mut states = vec![state(pose, phi)];
     let mut time = 0.0;
@@ -132,8 +136,8 @@ pub(crate) fn swim(
             let change = [next[0] - phi[0], next[1] - phi[1]];
             if change.iter().any(|rate| rate.abs() > 0.0) {
                 let between = [phi[0] + change[0] / 2.0, phi[1] + change[1] / 2.0];
-                let middle = body.connection(between);
-                let end = body.connection(next);
+                let middle = connection_at(between, pose);
+                let end = connection_at(next, pose);
                 pose = step(pose, [&connection, &middle, &end], change, wall);
                 connection = end;
             }

@@ -17,8 +17,8 @@ use crate::quantity::{self, Table};
 pub(super) struct BeyondFit {
     /// Fit more than r_s and χ: gain (actual over commanded angle of the servos; gains: each servo's), ct (c_t/μ), offsets (of
     /// both joints), deadband (of the servos), marker (position of the reflectors' middle on the link), scale (of the cameras),
-    /// lengths (of the links), float (its rotational drag over a sphere's), tilt (of the cameras), distortion (of the lens).
-    /// Warns if the runs cannot distinguish them
+    /// lengths (of the links), float (its rotational drag over a sphere's), tilt (of the cameras), distortion (of the lens), walls
+    /// (of the tank, if the campaign states it). Warns if the runs cannot distinguish them
     #[arg(long, value_name = "WHAT,…", value_delimiter = ',', value_parser = PossibleValuesParser::new(NuisanceParameter::ALL.map(NuisanceParameter::word)).try_map(|word| further(&word)))]
     fit_also: Vec<NuisanceParameter>,
     /// Rank what to measure next by how much one run of it would narrow the intervals

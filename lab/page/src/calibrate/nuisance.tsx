@@ -19,6 +19,7 @@ const CHOICES: readonly (readonly [word: string, what: string])[] = [
   ["lengths", "of the links"],
   ["float", "rotational drag of the float over a sphere’s"],
   ["tilt", "of the cameras"],
+  ["walls", "of the tank, if the campaign states it"],
   ["distortion", "of the lens"],
 ];
 
