@@ -51,14 +51,14 @@ pub(super) fn bounded(
     let (branch, bounds) = (problem.branch, &problem.bounds);
     let start = &free.extremal;
     let floor = start.efficiency(model) * FADED;
-    let keeps = |extremal: &Extremal| keeps_its_name(branch, model, extremal, floor);
+    let farthest = free.gait.phi().iter().map(nalgebra::Vector2::amax);
+    let farthest = farthest.fold(0.0, f64::max) + 1e-6;
+    let keeps = |extremal: &Extremal| keeps_its_name(branch, model, extremal, (floor, farthest));
     let path = Path {
         model,
         clearance: bounds.clearance / problem.swimmer.total_length(),
         keeps: &keeps,
     };
-    let farthest = free.gait.phi().iter().map(nalgebra::Vector2::amax);
-    let farthest = farthest.fold(0.0, f64::max) + 1e-6;
     let links = model.swimmer().links;
     let max_angle = bounds.max_angle.unwrap_or(f64::INFINITY);
     let fold = bounds
@@ -97,12 +97,13 @@ pub(super) fn bounded(
     certified(branch, found.gait)
 }
 
-/// Checks the properties that a gait must keep along the branch. The error names the lost property.
+/// Checks the properties that a gait must keep along the branch. The error names the lost property. The least efficiency is that of a gait
+/// with angles up to `farthest`; in small bounds the efficiency grows as the square of the angles.
 fn keeps_its_name(
     branch: Branch,
     model: &Model<f64>,
     extremal: &Extremal,
-    floor: f64,
+    (floor, farthest): (f64, f64),
 ) -> Result<(), &'static str> {
     if extremal.heading() * branch.sign() <= 0.0 {
         return Err(match branch {
@@ -113,12 +114,14 @@ fn keeps_its_name(
     if extremal.start().x <= branch.least_start() {
         return Err("a start angle of its branch (above 0 for small, above 2 rad for large)");
     }
-    if extremal.efficiency(model) < floor {
-        return Err("any displacement worth the name (the efficiency fades to nothing)");
-    }
     let cycle = extremal
         .cycle(model, 256)
         .ok_or("arcs that can be followed")?;
+    let reach = cycle.phi.iter().map(nalgebra::Vector2::amax);
+    let share = reach.fold(0.0, f64::max) / farthest;
+    if extremal.efficiency(model) < floor * share.powi(2).min(1.0) {
+        return Err("any displacement worth the name (the efficiency fades to nothing)");
+    }
     if crossings(&cycle.phi) > 0 || (turning_number(&cycle.phi) - 1.0).abs() > 1e-6 {
         return Err("a simple curve");
     }

@@ -152,3 +152,19 @@ fn problems_that_make_no_sense_are_refused() {
     problem.bounds.sector = true;
     assert!(efficiency(&problem).unwrap_err().is_bad_input());
 }
+
+/// Within small bounds the efficiency grows as the square of the angles.
+#[test]
+fn small_bounds_admit_a_gait() {
+    for swimmer in [Swimmer::purcell(), Swimmer::robot()] {
+        let of = |max_angle: f64| {
+            let found = efficiency(&EfficiencyProblem {
+                bounds: gait_optimizer::Bounds::within(max_angle),
+                ..EfficiencyProblem::new(swimmer, Branch::Small)
+            });
+            found.unwrap().efficiency
+        };
+        let off = of(1e-3) / of(1e-2) / 1e-2 - 1.0;
+        assert!(off.abs() < 1e-3, "{off}");
+    }
+}
