@@ -7,6 +7,7 @@
 //! sides determine the arcs ([`structure`]), and Newton's method solves for them to rounding ([`polish`]). The certificate is
 //! computed from the finished curve alone ([`certificate`]).
 
+mod along_clearance;
 mod arc;
 mod candidate;
 pub(crate) mod certificate;

@@ -1,5 +1,6 @@
 //! From a start to a polished chain: polygon, arcs, polish, and an active-set update until the arcs fit.
 
+use super::along_clearance;
 use super::arc::MOST_BENDS;
 use super::interior::{Polygon, best_polygon};
 use super::polish::{Polished, polish};
@@ -17,6 +18,10 @@ const NEARLY: f64 = 1e-4;
 /// A corner may overstep a bound by this \[rad, or over L\].
 const OVERSTEPPED: f64 = 1e-10;
 
+/// Shares of a polygon's speed that its chain may lose.
+const LOST: f64 = 1e-4;
+const LOST_ON_BOUNDS: f64 = 0.03;
+
 /// First guesses of a singular arc, over half of any new arc's.
 const LENGTHS: [f64; 3] = [1.0, 3.0, 9.0];
 
@@ -24,11 +29,25 @@ const LENGTHS: [f64; 3] = [1.0, 3.0, 9.0];
 pub(crate) fn candidate(setting: &Setting, rough: &Polygon, times: usize) -> Option<Polished> {
     let polygon = best_polygon(setting, rough, times)?;
     let links = arcs(setting, &polygon)?;
-    // A polish that lost what the polygon had went astray.
-    let keeps = |chain: &Polished| chain.speed > polygon.speed * (1.0 - 1e-4);
+    // A polish that lost what the polygon had went astray; but only the polygon's corners keep the bounds.
+    let lost = if crosses_bounds(setting, &polygon) {
+        LOST_ON_BOUNDS
+    } else {
+        LOST
+    };
+    let keeps = |chain: &Polished| chain.speed > polygon.speed * (1.0 - lost);
     let once = lap(setting, &links);
     let of_links = |links| mended(setting, links).filter(keeps);
     once.into_iter().chain([links]).find_map(of_links)
+}
+
+/// Returns `true` if a side of a polygon oversteps a bound between its corners.
+fn crosses_bounds(setting: &Setting, polygon: &Polygon) -> bool {
+    let middle = |side| {
+        let [from, to] = polygon.layout.ends(&polygon.z, side);
+        0.5 * (from + to)
+    };
+    (0..polygon.layout.arcs()).any(|side| setting.region.overstepped(&middle(side)) > OVERSTEPPED)
 }
 
 /// The links of one lap of a chain that runs a shorter one several times over.
@@ -55,6 +74,7 @@ fn lap(setting: &Setting, links: &[Link]) -> Option<Vec<Link>> {
 pub(crate) fn mended(setting: &Setting, mut links: Vec<Link>) -> Option<Polished> {
     for _ in 0..MENDS {
         widened::along_bounds(setting, &mut links);
+        along_clearance::split(setting, &mut links);
         let polished = polish(setting, &links)?;
         let mut next = polished.links.clone();
         if widened::without_backwards(&mut next) {

@@ -35,6 +35,8 @@ const FIRST_BARRIER: f64 = 1e-2;
 const ROUGH_BARRIER: f64 = 1e-4;
 const LAST_BARRIER: f64 = 1e-8;
 const MOST_STEPS: usize = 150;
+/// Least time of a side of the best polygon at first, over the shortest.
+const SLACK: f64 = 1.001;
 /// No farther than this share of the way to any limit.
 const SHARE: f64 = 0.995;
 /// Quadrature points on a side.
@@ -56,11 +58,30 @@ pub(crate) fn best_polygon(setting: &Setting, rough: &Polygon, times: usize) -> 
         let [from, to] = rough.layout.ends(&rough.z, k / times);
         from + (to - from) * ((k % times) as f64 * part)
     };
-    let corners: Vec<Vector2<f64>> = (0..n).map(corner).collect();
-    let (layout, z) = Layout::of_corners(&corners, Shape::Straight, |side, _| {
-        part * rough.z[rough.layout.time_index(side / times)]
+    // A side may overstep a bound that is not convex.
+    let corners: Vec<Vector2<f64>> = (0..n)
+        .map(|k| drawn_in(setting, corner(k), k % times > 0))
+        .collect();
+    let (layout, z) = Layout::of_corners(&corners, Shape::Straight, |side, [from, to]| {
+        let time = part * rough.z[rough.layout.time_index(side / times)];
+        time.max(SLACK * setting.time(&(to - from)))
     });
     Method::new(setting, layout).solve(z, [ROUGH_BARRIER, LAST_BARRIER])
+}
+
+/// A corner, drawn towards the straight shape until it lies within the bounds if it is new.
+fn drawn_in(setting: &Setting, mut corner: Vector2<f64>, is_new: bool) -> Vector2<f64> {
+    /// Distance from a bound \[rad, or over L\].
+    const MARGIN: f64 = 1e-4;
+    /// Share of its angles that a step keeps.
+    const KEPT: f64 = 0.998;
+    for _ in 0..200 {
+        if !is_new || setting.region.overstepped(&corner) < -MARGIN {
+            break;
+        }
+        corner *= KEPT;
+    }
+    corner
 }
 
 struct Method<'a> {

@@ -78,9 +78,6 @@ pub struct Steering {
     pub turn: Joined,
     /// Common shapes that were tried.
     pub shapes: usize,
-    /// The largest angle \[rad\] that the gait that turns was given, where it is kept from where the side links come near each
-    /// other.
-    pub turning_angle: Option<f64>,
 }
 
 /// What the fastest gait of a kind does.
@@ -115,23 +112,13 @@ pub fn steer(problem: &SteerProblem, watch: Watch<'_>) -> Result<Steering, Speed
     let model = Model::new(&of.swimmer.of_unit_length())?;
     refuse_immobile(&model, &of.bounds)?;
     let region = Region::new(&of.bounds, &of.swimmer.links);
-    let turning_angle = shape::free_of_links(&region, &of.bounds);
-    let turning_bounds = Bounds {
-        max_angle: turning_angle.or(of.bounds.max_angle),
-        ..of.bounds
-    };
-    let turning = Region::new(&turning_bounds, &of.swimmer.links);
     let fast = of.fast();
-    let within = |goal| match goal {
-        Goal::Rotation => (&turning_bounds, &turning),
-        Goal::Distance => (&of.bounds, &region),
-    };
     let setting = |kind: Kind, anchor| Setting {
         asked: asked(kind, anchor),
-        ..of.setting(&model, within(kind.0).1)
+        ..of.setting(&model, &region)
     };
     if let Some(shape) = problem.shape {
-        let margin = -turning.overstepped(&Vector2::from(shape));
+        let margin = -region.overstepped(&Vector2::from(shape));
         if margin.is_nan() || margin < shape::MARGIN {
             return Err(SpeedError::Shape { shape });
         }
@@ -151,7 +138,7 @@ pub fn steer(problem: &SteerProblem, watch: Watch<'_>) -> Result<Steering, Speed
     }
     let joining = shape::Joining {
         settings: &|kind: usize, anchor| setting(KINDS[kind].0, Some(anchor)),
-        region: &turning,
+        region: &region,
         free: &free,
         seed: of.seed,
         threads: of.threads,
@@ -173,7 +160,7 @@ pub fn steer(problem: &SteerProblem, watch: Watch<'_>) -> Result<Steering, Speed
     let told = |number: usize, chain: &Polished| {
         let (kind, objective, _) = KINDS[number];
         let joined = setting(kind, Some(anchor));
-        let of_file = (objective, &of.swimmer, within(kind.0).0);
+        let of_file = (objective, &of.swimmer, &of.bounds);
         let unjoined = joining.unjoined(number, &setting(kind, None), chain);
         told(of_file, &joined, chain, (fast, unjoined)).ok_or_else(|| none_of(number))
     };
@@ -183,7 +170,6 @@ pub fn steer(problem: &SteerProblem, watch: Watch<'_>) -> Result<Steering, Speed
         left: told(1, &left)?,
         turn: told(2, &turn)?,
         shapes,
-        turning_angle,
     })
 }
 
@@ -196,7 +182,7 @@ fn of_kind(problem: &SpeedProblem, kind: usize, chains: usize) -> SpeedError {
     }
 }
 
-/// The chains that starts lead to, fastest first: those whose certificates pass, and where gaits join all that are gaits.
+/// Gaits that starts lead to, fastest first, certified or not.
 fn chains(setting: &Setting, starts: &[Vec<Vector2<f64>>], threads: usize) -> Vec<Polished> {
     /// Groups of rough polygons that are finished.
     const GROUPS: usize = 6;
@@ -211,13 +197,7 @@ fn chains(setting: &Setting, starts: &[Vec<Vector2<f64>>], threads: usize) -> Ve
         threads,
         &|_| (),
         || (),
-        |(), index| {
-            let chain = candidate(setting, chosen[index], SIDES)?;
-            match setting.asked.anchor {
-                Some(_) => joined(setting, chain),
-                None => certified(setting, chain),
-            }
-        },
+        |(), index| joined(setting, candidate(setting, chosen[index], SIDES)?),
     );
     let mut chains: Vec<Polished> = finished.into_iter().flatten().collect();
     chains.sort_by(|a, b| b.speed.total_cmp(&a.speed));

@@ -265,7 +265,17 @@ fn motion(setting: &Setting, polygon: &Polygon, side: usize, from: &[Hold], to: 
         let [up, down] = [pushes[2 * joint], pushes[2 * joint + 1]];
         (up.max(down) > PUSHES).then_some(if up > down { 1.0 } else { -1.0 })
     });
-    if let [Some(one), Some(two)] = full {
+    let both = from
+        .iter()
+        .find(|hold| to.iter().any(|other| other.0 == hold.0));
+    // A side whose ends rest on the clearance may cut off what lies beyond: the gait runs along it.
+    let cuts = both.is_some_and(|hold| {
+        let bound = setting.region.bound(hold.0);
+        hold.1.is_some() && bound.is_some_and(|bound| bound.margin(&(0.5 * (start + end))) < 0.0)
+    });
+    if let [Some(one), Some(two)] = full
+        && !cuts
+    {
         return Motion::Extreme([one, two]);
     }
     let share = [0, 1].map(|joint| way[joint].abs() / setting.rates[joint]);
@@ -275,9 +285,6 @@ fn motion(setting: &Setting, polygon: &Polygon, side: usize, from: &[Hold], to: 
         _ => usize::from(share[1] > share[0]),
     };
     let way = way[pace].signum();
-    let both = from
-        .iter()
-        .find(|hold| to.iter().any(|other| other.0 == hold.0));
     if let Some(&bound) = both {
         return Motion::Along { bound, pace, way };
     }

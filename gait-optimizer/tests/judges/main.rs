@@ -15,6 +15,7 @@ mod relaxing;
 mod speed;
 mod speed_comparison;
 mod speed_direct;
+mod steer;
 mod swimmers;
 mod turning;
 mod two_hundred_swimmers;

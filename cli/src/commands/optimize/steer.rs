@@ -116,16 +116,8 @@ impl Objective for Steer {
             // Where the gaits join, and how many shapes were tried.
             .key("shape_rad", steering.shape)
             .key("shapes", steering.shapes)
-            // The largest that the gait that turns was given, where it is kept from where the side links come near each other.
-            .key("turning_max_angle_rad", steering.turning_angle)
             .key("gaits", documents)
             .key("seconds", task.seconds.get());
-        if let Some(angle) = steering.turning_angle {
-            document.row(
-                "turns within",
-                format!("{}, where side links stay apart", quantity::angle(angle)),
-            );
-        }
         Ok(SearchResult { document, gaits })
     }
 }

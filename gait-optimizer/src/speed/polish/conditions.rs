@@ -2,6 +2,7 @@
 
 use nalgebra::{DVector, Matrix2, Vector2};
 
+use super::super::along_clearance::transition;
 use super::super::chain::Layout;
 use super::super::expansion::Expansion;
 use super::super::quadrature::Rule;
@@ -20,6 +21,11 @@ pub(super) enum Equation {
     Held {
         corner: usize,
         hold: Hold,
+    },
+    /// Change from one arc along the clearance to the next.
+    Transition {
+        corner: usize,
+        motions: [Motion; 2],
     },
     /// One angle of the corner at which gaits join.
     Anchored {
@@ -42,6 +48,11 @@ pub(super) fn equations(setting: &Setting, links: &[Link]) -> Vec<Equation> {
                 let (joint, way) = motion.pace();
                 equations.push(Equation::Pace { arc, joint, way });
             }
+        }
+        let before = &links[(arc + links.len() - 1) % links.len()].motion;
+        if transition(setting, [before, &link.motion], &link.corner).is_some() {
+            let (corner, motions) = (arc, [*before, link.motion]);
+            equations.push(Equation::Transition { corner, motions });
         }
         for &hold in &link.held {
             equations.push(Equation::Held { corner: arc, hold });
@@ -110,10 +121,16 @@ impl Conditions<'_> {
                     values[row] = z[at] - angle;
                     slopes[(row, at)] = 1.0;
                 }
-                Equation::Held { corner, hold } => {
+                Equation::Held { corner, .. } | Equation::Transition { corner, .. } => {
                     let phi = layout.corner(z, corner);
                     let at = layout.corner_index(corner);
-                    let held = held(setting, &hold, &phi)?;
+                    let held = match equation {
+                        Equation::Held { hold, .. } => held(setting, hold, &phi),
+                        Equation::Transition { motions, .. } => {
+                            transition(setting, motions.each_ref(), &phi)
+                        }
+                        _ => None,
+                    }?;
                     let multiplier = y.map_or(0.0, |y| y[row]);
                     values[row] = held.value;
                     for i in 0..2 {

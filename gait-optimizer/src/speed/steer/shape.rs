@@ -1,13 +1,11 @@
 //! At which shape gaits shall join: the one that costs the three of them least.
 
 use nalgebra::Vector2;
-use swimmer_files::Bounds;
 
 use super::super::polish::Polished;
 use super::super::setting::Setting;
 use super::super::starts::{self, IMAGES, Image};
 use super::{certified, chains, near};
-use crate::numerics::halved;
 use crate::parallel::{Watch, in_parallel};
 use crate::region::Region;
 
@@ -32,26 +30,6 @@ const MODELS: usize = 3;
 const OTHERS: usize = 32;
 /// Gaits of one kind are alike whose speeds differ by less than this share.
 const ALIKE: f64 = 1e-6;
-
-/// The largest |φᵢ| within which the side links cannot come near each other; none where nothing keeps them apart.
-///
-/// Along that curved bound the arcs of a gait that turns change pieces and pace, which the polish does not follow: it turns within
-/// the square beside it.
-pub(super) fn free_of_links(region: &Region, bounds: &Bounds) -> Option<f64> {
-    const LOOKS: usize = 200;
-    bounds.no_overlap.then_some(())?;
-    let clear = |angle: f64| {
-        (0..=LOOKS).all(|k| {
-            let along = angle * (2.0 * k as f64 / LOOKS as f64 - 1.0);
-            [1.0, -1.0].into_iter().all(|side| {
-                region.overstepped(&Vector2::new(side * angle, along)) <= 0.0
-                    && region.overstepped(&Vector2::new(along, side * angle)) <= 0.0
-            })
-        })
-    };
-    let [inside, _] = halved([0.0, region.horizon], 60, clear);
-    Some(inside - MARGIN)
-}
 
 /// What the search for the common shape knows.
 pub(super) struct Joining<'a, 'm> {

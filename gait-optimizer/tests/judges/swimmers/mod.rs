@@ -1,6 +1,6 @@
 //! Swimmers and bounds of all kinds, for every objective: sampled with a seed, with simple gaits for comparison.
 
-mod apart;
+pub(crate) mod apart;
 
 pub(crate) use apart::Apart;
 use nalgebra::Vector2;
