@@ -253,6 +253,12 @@ impl Region {
         offsets.fold(0.0, f64::max)
     }
 
+    /// Scale of the shapes that the straight bounds admit: the distance of the nearest one from the straight shape \[rad\], at most 1.
+    pub(crate) fn scale(&self) -> f64 {
+        let offsets = self.edges.iter().map(|edge| edge.offset.abs());
+        offsets.fold(1.0, f64::min)
+    }
+
     /// All bounds: the straight ones, then the curved one. Its index is the place in this order.
     pub fn bounds(&self) -> impl Iterator<Item = Bound> + '_ {
         let straight = self.edges.iter().map(|edge| Bound::Straight(*edge));

@@ -13,7 +13,7 @@ use super::within_rates::within_rates;
 pub(super) const SIDES: usize = 2;
 /// Largest number of active-set updates.
 const MENDS: usize = 8;
-/// By how much the second variation of a chain may be negative.
+/// By how much the second variation of a chain may be negative, for shapes of the scale of 1 rad.
 const NEARLY: f64 = 1e-4;
 /// A corner may overstep a bound by this \[rad, or over L\].
 const OVERSTEPPED: f64 = 1e-10;
@@ -52,17 +52,19 @@ fn crosses_bounds(setting: &Setting, polygon: &Polygon) -> bool {
 
 /// The links of one lap of a chain that runs a shorter one several times over.
 fn lap(setting: &Setting, links: &[Link]) -> Option<Vec<Link>> {
+    /// Over the scale of the shapes.
     const SAME: f64 = 1e-2;
     // A gait that joins others passes where they join once.
     if setting.asked.period.is_some() || setting.asked.anchor.is_some() {
         return None;
     }
     let count = links.len();
+    let same = SAME * setting.region.scale();
     let repeats = |lap: &usize| {
         let later = links.iter().cycle().skip(*lap);
         let mut pairs = links.iter().zip(later);
         count.is_multiple_of(*lap)
-            && pairs.all(|(a, b)| a.motion == b.motion && (a.corner - b.corner).norm() < SAME)
+            && pairs.all(|(a, b)| a.motion == b.motion && (a.corner - b.corner).norm() < same)
     };
     let lap = (3..=count / 2).find(repeats)?;
     Some(links[..lap].to_vec())
@@ -100,7 +102,7 @@ pub(crate) fn mended(setting: &Setting, mut links: Vec<Link>) -> Option<Polished
                 let push = pushes.get(at).copied().unwrap_or(0.0);
                 at += 1;
                 let needed = [&motion, before].iter().any(|motion| follows(motion, hold));
-                let keep = needed || push > -1e-9;
+                let keep = needed || push * setting.region.scale() > -1e-9;
                 changed |= !keep;
                 keep
             });
@@ -108,7 +110,8 @@ pub(crate) fn mended(setting: &Setting, mut links: Vec<Link>) -> Option<Polished
         if !changed {
             // Few bends may represent a long singular arc so loosely that its end hardly matters, and for joined gaits an arc may
             // remain that a slightly higher speed would remove: the certificate decides.
-            return (polished.convexity > -NEARLY).then_some(polished);
+            let nearly = NEARLY / setting.region.scale().powi(2);
+            return (polished.convexity > -nearly).then_some(polished);
         }
         links = next;
     }

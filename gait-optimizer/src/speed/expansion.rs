@@ -30,7 +30,7 @@ impl Expansion {
         let jets = layout.jets(setting.model, rule, z);
         let (net, equalities, equality_slopes) = setting.equalities(layout, &jets, z);
         let measure = setting.measure(&net);
-        if !measure.is_finite() || measure < 1e-9 {
+        if !measure.is_finite() || measure < setting.least_measure() {
             return None;
         }
         let (_, mut gradient) = chain::gradient(layout, &jets, z, setting.weights(&net, None));
@@ -62,10 +62,11 @@ impl Expansion {
         })
     }
 
-    /// Residual of the stationarity conditions.
-    pub(super) fn residual(&self, y: &DVector<f64>) -> f64 {
+    /// Residual of the stationarity conditions; the slopes are those over angles of a scale \[rad\].
+    pub(super) fn residual(&self, y: &DVector<f64>, scale: f64) -> f64 {
         let pull = self.slopes.tr_mul(y);
-        (&self.gradient + pull).amax().max(self.values.amax())
+        let slope = (&self.gradient + pull).amax() * scale;
+        slope.max(self.values.amax())
     }
 
     /// The step, and the multipliers after it: `H dz + Jᵀ y = −gradient`, `J dz = −values`; `None` if that has no finite

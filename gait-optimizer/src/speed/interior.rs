@@ -45,7 +45,8 @@ const POINTS: usize = 6;
 /// Approximation of the best polygon near a start whose corners lie strictly within the bounds. Returns `None` if the method
 /// stalls or the gait does not swim.
 pub(crate) fn rough_polygon(setting: &Setting, start: &[Vector2<f64>]) -> Option<Polygon> {
-    let time = |_, [from, to]: [Vector2<f64>; 2]| 1.3 * setting.time(&(to - from)) + 1e-3;
+    let least = 1e-3 * setting.region.scale();
+    let time = |_, [from, to]: [Vector2<f64>; 2]| 1.3 * setting.time(&(to - from)) + least;
     let (layout, z) = Layout::of_corners(start, Shape::Straight, time);
     Method::new(setting, layout).solve(z, [FIRST_BARRIER, ROUGH_BARRIER])
 }
@@ -71,12 +72,13 @@ pub(crate) fn best_polygon(setting: &Setting, rough: &Polygon, times: usize) -> 
 
 /// A corner, drawn towards the straight shape until it lies within the bounds if it is new.
 fn drawn_in(setting: &Setting, mut corner: Vector2<f64>, is_new: bool) -> Vector2<f64> {
-    /// Distance from a bound \[rad, or over L\].
+    /// Distance from a bound, over the scale of the shapes.
     const MARGIN: f64 = 1e-4;
     /// Share of its angles that a step keeps.
     const KEPT: f64 = 0.998;
+    let margin = MARGIN * setting.region.scale();
     for _ in 0..200 {
-        if !is_new || setting.region.overstepped(&corner) < -MARGIN {
+        if !is_new || setting.region.overstepped(&corner) < -margin {
             break;
         }
         corner *= KEPT;
@@ -139,6 +141,11 @@ impl<'a> Method<'a> {
         limits::inequalities(self.setting, &self.layout, z)
     }
 
+    /// Scale of the second derivatives of the objective, a logarithm, over angles.
+    fn curvature(&self) -> f64 {
+        self.setting.region.scale().powi(-2)
+    }
+
     /// Distance of the first corner from the shape at which gaits join.
     fn anchored(&self, z: &DVector<f64>) -> Option<[f64; 2]> {
         let off = self.layout.corner(z, 0) - self.setting.asked.anchor?;
@@ -180,7 +187,7 @@ impl<'a> Method<'a> {
         };
         for _ in 0..MOST_STEPS {
             let evaluate = self.evaluate(&here)?;
-            if evaluate.error(&here) < 10.0 * here.barrier {
+            if evaluate.error(&here, self.setting.region.scale()) < 10.0 * here.barrier {
                 if here.barrier <= last {
                     return Some(self.finish(&here, evaluate.net));
                 }
@@ -191,8 +198,9 @@ impl<'a> Method<'a> {
                 if here.barrier < 1e-6 {
                     return Some(self.finish(&here, evaluate.net));
                 }
-                here.damping = (10.0 * here.damping).max(1e-2);
-                if here.damping > 1e6 {
+                let curvature = self.curvature();
+                here.damping = (10.0 * here.damping).max(1e-2 * curvature);
+                if here.damping > 1e6 * curvature {
                     return None;
                 }
             }
@@ -208,7 +216,7 @@ impl<'a> Method<'a> {
         let jets = layout.jets(self.setting.model, &self.rule, z);
         let (net, mut values, mut slopes) = self.setting.equalities(layout, &jets, z);
         let measure = self.setting.measure(&net);
-        if measure.is_nan() || measure < 1e-9 {
+        if measure.is_nan() || measure < self.setting.least_measure() {
             return None;
         }
         let weights = self.setting.weights(&net, Some(y.as_slice()));
@@ -260,9 +268,12 @@ impl<'a> Method<'a> {
             }
         }
         // With a large weight on the equalities, the matrix is definite only if the Hessian is convex along them.
-        let scale = 10.0 * matrix.diagonal().amax().clamp(1.0, 1e4);
+        let curvature = self.curvature();
+        let largest = matrix.diagonal().amax();
+        let scale = 10.0 * largest.clamp(curvature, 1e4 * curvature);
+        let least = 1e-12 * self.setting.region.scale().powi(4);
         for (value, slope) in evaluate.values.iter().zip(&evaluate.slopes) {
-            let weight = scale / slope.norm_squared().max(1e-12);
+            let weight = scale / slope.norm_squared().max(least);
             matrix.ger(weight, slope, slope, 1.0);
             right -= slope * (weight * value);
         }
@@ -271,21 +282,22 @@ impl<'a> Method<'a> {
 
     fn direction(&self, here: &mut Iterate, evaluate: &Evaluation) -> Option<Direction> {
         let (matrix, right) = self.system(here, evaluate);
+        let curvature = self.curvature();
         let (step, dy) = loop {
             let mut damped = matrix.clone();
             for i in 0..self.layout.size {
                 damped[(i, i)] += here.damping;
             }
             if let Some(factors) = damped.cholesky() {
-                here.damping = if here.damping < 1e-7 {
+                here.damping = if here.damping < 1e-7 * curvature {
                     0.0
                 } else {
                     here.damping / 4.0
                 };
                 break newton_step(&factors, &right, &evaluate.values, &evaluate.slopes)?;
             }
-            here.damping = (4.0 * here.damping).max(1e-4);
-            if here.damping > 1e8 {
+            here.damping = (4.0 * here.damping).max(1e-4 * curvature);
+            if here.damping > 1e8 * curvature {
                 return None;
             }
         };
@@ -302,7 +314,8 @@ impl<'a> Method<'a> {
             }
             pushes.push(d_push);
         }
-        longest = longest.min(0.5 / step.rows(0, 2 * self.layout.arcs()).amax().max(1e-12));
+        let farthest = step.rows(0, 2 * self.layout.arcs()).amax();
+        longest = longest.min(0.5 * self.setting.region.scale() / farthest.max(1e-12));
         let after = (&dy + &here.y).abs();
         here.penalty = here
             .penalty
@@ -351,8 +364,8 @@ impl<'a> Method<'a> {
 }
 
 impl Evaluation {
-    /// Residual of the barrier problem's KKT conditions.
-    fn error(&self, here: &Iterate) -> f64 {
+    /// Residual of the barrier problem's KKT conditions; the slopes are those over angles of the scale of the shapes.
+    fn error(&self, here: &Iterate, scale: f64) -> f64 {
         let mut dual = self.gradient.clone();
         let mut error: f64 = 0.0;
         for (one, push) in self.inequalities.iter().zip(&here.pushes) {
@@ -362,7 +375,7 @@ impl Evaluation {
             error = error.max((one.value * push - here.barrier).abs());
         }
         let infeasible = self.values.iter().map(|value| value.abs());
-        infeasible.fold(error.max(dual.amax()), f64::max)
+        infeasible.fold(error.max(scale * dual.amax()), f64::max)
     }
 }
 

@@ -32,7 +32,7 @@ pub(super) const POINTS: usize = 32;
 const MOST_STEPS: usize = 39;
 /// Most times that a solution gives way to the other of its fold.
 const FOLDS: usize = 4;
-/// Residuals below this are rounding.
+/// Residuals below this are rounding, for shapes of the scale of 1 rad.
 const ROUNDING: f64 = 2e-12;
 /// Bends of a singular arc.
 pub(crate) const BENDS: usize = 8;
@@ -144,11 +144,13 @@ struct Solution {
 /// Newton's method from `z`. Returns `None` if it does not converge.
 fn solve(conditions: &Conditions, mut z: DVector<f64>) -> Option<Solution> {
     let mut y = conditions.evaluate(&z, None)?.nearest_multipliers()?;
+    // Slopes of the objective, a logarithm, are over the scale of the angles.
+    let size = conditions.setting.region.scale();
     let mut best = f64::INFINITY;
     let mut stalls = 0;
     for _ in 0..MOST_STEPS {
         let evaluate = conditions.evaluate(&z, Some(&y))?;
-        let residual = evaluate.residual(&y);
+        let residual = evaluate.residual(&y, size);
         if residual < ROUNDING {
             break;
         }
@@ -161,12 +163,12 @@ fn solve(conditions: &Conditions, mut z: DVector<f64>) -> Option<Solution> {
             return None;
         }
         let (step, next) = evaluate.step()?;
-        let scale = (0.3 / step.amax()).min(1.0);
+        let scale = (0.3 * size / step.amax()).min(1.0);
         z += step * scale;
         y = next;
     }
     let evaluate = conditions.evaluate(&z, Some(&y))?;
-    if evaluate.residual(&y) > 1e-9 {
+    if evaluate.residual(&y, size) > 1e-9 {
         return None;
     }
     let (convexity, weakest) = evaluate.convexity();
@@ -185,9 +187,9 @@ fn solve(conditions: &Conditions, mut z: DVector<f64>) -> Option<Solution> {
 /// second order hardly anything depends on it, and to third order a saddle lies close to the maximum. Along the weakest shift
 /// the slope is λt + λ't²/2, so the other solution is near t = −2λ/λ'.
 fn beyond_the_fold(conditions: &Conditions, saddle: &Solution) -> Option<Solution> {
-    /// Step of the difference quotient.
+    /// Step of the difference quotient, over the scale of the shapes.
     const STEP: f64 = 1e-4;
-    /// Shifts of corners \[rad\] and times that still are near.
+    /// Shifts of corners and times that still are near, over the same.
     const NEAR: f64 = 0.1;
     /// The next orders may put it further away.
     const FURTHER: [f64; 4] = [1.0, 1.5, 2.0, 3.0];
@@ -202,12 +204,14 @@ fn beyond_the_fold(conditions: &Conditions, saddle: &Solution) -> Option<Solutio
         let evaluate = conditions.evaluate(&(z + weakest * t), Some(y))?;
         Some(weakest.dot(&(&evaluate.hessian * weakest)))
     };
-    let third = (bend(STEP)? - bend(-STEP)?) / (2.0 * STEP);
+    let size = conditions.setting.region.scale();
+    let step = STEP * size;
+    let third = (bend(step)? - bend(-step)?) / (2.0 * step);
     let shift = -2.0 * convexity / third;
     FURTHER
         .into_iter()
         .map(|times| times * shift)
-        .filter(|shift| shift.abs() < NEAR)
+        .filter(|shift| shift.abs() < NEAR * size)
         .find_map(|shift| {
             let other = solve(conditions, z + weakest * shift)?;
             // Not back where it was.

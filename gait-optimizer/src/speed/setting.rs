@@ -84,6 +84,11 @@ impl Setting<'_> {
         }
     }
 
+    /// Measure below which a gait does not swim. The least measures, of gaits that turn or swim sideways, grow as the cube of small angles.
+    pub(crate) fn least_measure(&self) -> f64 {
+        1e-9 * self.region.scale().powi(3)
+    }
+
     /// Returns true if the heading is prescribed.
     fn heads(&self) -> bool {
         self.asked.goal == Goal::Distance && self.asked.heading != HeadingRule::Any

@@ -104,10 +104,12 @@ fn random(reach: f64, seed: u64, index: usize) -> Box<dyn Fn(f64) -> Vector2<f64
 
 /// Each corner drawn towards the straight shape until it lies well within the bounds.
 pub(crate) fn within(region: &Region, mut points: Vec<Vector2<f64>>) -> Vec<Vector2<f64>> {
+    /// Over the scale of the shapes.
     const MARGIN: f64 = 0.02;
+    let margin = MARGIN * region.scale();
     for point in &mut points {
         for _ in 0..200 {
-            if region.overstepped(point) < -MARGIN {
+            if region.overstepped(point) < -margin {
                 break;
             }
             *point *= 0.97;

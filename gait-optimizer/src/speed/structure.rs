@@ -55,9 +55,9 @@ impl Link {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Hold(pub(crate) usize, pub(crate) Option<Piece>);
 
-/// Multipliers above this push.
+/// Multipliers above this push, for shapes of the scale of 1 rad.
 const PUSHES: f64 = 1e-4;
-/// Corners closer than this to a bound rest on it.
+/// Corners closer than this to a bound rest on it, over the scale of the shapes.
 const RESTS: f64 = 1e-4;
 /// Arcs that take a smaller share of the period are left out.
 const SHORTEST: f64 = 2e-3;
@@ -121,8 +121,9 @@ pub(crate) fn arcs(setting: &Setting, polygon: &Polygon) -> Option<Vec<Link>> {
     let layout = &polygon.layout;
     let period = layout.period(&polygon.z);
     let n = layout.arcs();
+    let rests = RESTS * setting.region.scale();
     let held: Vec<Vec<Hold>> = (0..n)
-        .map(|corner| holds(setting, &layout.corner(&polygon.z, corner), RESTS))
+        .map(|corner| holds(setting, &layout.corner(&polygon.z, corner), rests))
         .collect();
     let side = |k: usize| {
         let motion = motion(setting, polygon, k, &held[k], &held[(k + 1) % n]);
@@ -263,7 +264,11 @@ fn motion(setting: &Setting, polygon: &Polygon, side: usize, from: &[Hold], to: 
     let pushes = &polygon.pushes[side];
     let full = [0, 1].map(|joint| {
         let [up, down] = [pushes[2 * joint], pushes[2 * joint + 1]];
-        (up.max(down) > PUSHES).then_some(if up > down { 1.0 } else { -1.0 })
+        (up.max(down) * setting.region.scale() > PUSHES).then_some(if up > down {
+            1.0
+        } else {
+            -1.0
+        })
     });
     let both = from
         .iter()
