@@ -28,7 +28,7 @@ const BATCH: usize = 8;
 /// Sides of a finished polygon per side of a rough one, if the chain from fewer sides is not certified.
 const MORE_SIDES: [usize; 2] = [3, 4];
 /// Rough polygons slower than this share of the best finished gait are skipped.
-const HOPELESS: f64 = 0.93;
+pub(super) const HOPELESS: f64 = 0.93;
 
 /// Finds the fastest gait.
 ///

@@ -19,8 +19,10 @@ use super::certificate::{GaitRequirements, certificate, of_cycle};
 use super::error::SpeedError;
 use super::polish::Polished;
 use super::problem::{SpeedProblem, validate};
+use super::search::HOPELESS;
+use super::selection::{self, Group};
 use super::setting::{Goal, HeadingRule, Setting};
-use super::{samples, selection, starts};
+use super::{samples, starts};
 use crate::certificate::{Certificate, Condition};
 use crate::cycle::Cycle;
 use crate::immobile::refuse_immobile;
@@ -119,7 +121,7 @@ pub fn steer(problem: &SteerProblem, watch: Watch<'_>) -> Result<Steering, Speed
     };
     if let Some(shape) = problem.shape {
         let margin = -region.overstepped(&Vector2::from(shape));
-        if margin.is_nan() || margin < shape::MARGIN {
+        if margin.is_nan() || margin < shape::MARGIN * region.scale() {
             return Err(SpeedError::Shape { shape });
         }
     }
@@ -184,12 +186,19 @@ fn of_kind(problem: &SpeedProblem, kind: usize, chains: usize) -> SpeedError {
 
 /// Gaits that starts lead to, fastest first, certified or not.
 fn chains(setting: &Setting, starts: &[Vec<Vector2<f64>>], threads: usize) -> Vec<Polished> {
+    let groups = selection::rough_groups(setting, starts, threads, &|_| ());
+    finished(setting, &groups, threads)
+}
+
+/// Gaits that groups of rough polygons lead to, fastest first, certified or not.
+fn finished(setting: &Setting, groups: &[Group], threads: usize) -> Vec<Polished> {
     /// Groups of rough polygons that are finished.
     const GROUPS: usize = 6;
-    let groups = selection::rough_groups(setting, starts, threads, &|_| ());
+    let fastest = groups.first().map_or(0.0, Group::speed);
     let chosen: Vec<_> = groups
         .iter()
         .take(GROUPS)
+        .take_while(|group| group.speed() >= HOPELESS * fastest)
         .flat_map(|group| &group.chosen)
         .collect();
     let finished = in_parallel(

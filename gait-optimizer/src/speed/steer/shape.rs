@@ -3,21 +3,24 @@
 use nalgebra::Vector2;
 
 use super::super::polish::Polished;
+use super::super::selection::{self, Group};
 use super::super::setting::Setting;
 use super::super::starts::{self, IMAGES, Image};
-use super::{certified, chains, near};
+use super::{certified, chains, finished, near};
 use crate::parallel::{Watch, in_parallel};
 use crate::region::Region;
 
-/// The common shape stays this far within the bounds \[rad, or over L\].
+/// The common shape stays this far within the bounds, over the scale of the shapes; so are the lengths below.
 pub(super) const MARGIN: f64 = 0.02;
-/// Shapes that are looked at along each joint, those of them that are tried, and of those the ones that are moved.
+/// Shapes that are looked at along each joint, those of them that are tried by rough polygons, of those the ones whose polygons are
+/// finished, and of those the ones that are moved.
 const GRID: usize = 41;
 const TRIED: usize = 12;
+const FINISHED: usize = 6;
 const MOVED: usize = 4;
-/// Tried shapes are no nearer to each other \[rad\].
+/// Tried shapes are no nearer to each other.
 const APART: f64 = 0.3;
-/// The best of them are moved by these steps as long as that costs less \[rad\].
+/// The best of them are moved by these steps as long as that costs less.
 const STEPS: [f64; 2] = [0.12, 0.04];
 /// And so many times at most with each of them.
 const MOVES: usize = 6;
@@ -28,6 +31,10 @@ const CORNERS_AGAIN: [usize; 5] = [10, 14, 20, 28, 35];
 const MODELS: usize = 3;
 /// Starts of any kind through the shape that is settled on.
 const OTHERS: usize = 32;
+/// Gaits of one kind with as many arcs are the same whose speeds differ by less than this share.
+const SAME: f64 = 1e-9;
+/// A gait that is slower than the fastest by more than this share is not certified.
+const BEHIND: f64 = 1e-3;
 /// Gaits of one kind are alike whose speeds differ by less than this share.
 const ALIKE: f64 = 1e-6;
 
@@ -43,6 +50,14 @@ pub(super) struct Joining<'a, 'm> {
 
 type Three = [Polished; 3];
 
+/// A shape with the rough polygons of each kind through it.
+struct RoughlyJoined {
+    shape: Vector2<f64>,
+    /// Cost of joining there, from the fastest polygons.
+    cost: f64,
+    groups: [Vec<Group>; 3],
+}
+
 /// What is asked of a free gait to guess what joining it costs.
 struct Outlined {
     /// Over that of the fastest.
@@ -52,11 +67,18 @@ struct Outlined {
 }
 
 impl Joining<'_, '_> {
-    /// Gaits of a kind through a shape, the fastest first.
-    fn gaits_at(&self, kind: usize, anchor: Vector2<f64>) -> Vec<Polished> {
+    /// Rough polygons of a kind through a shape, the fastest first.
+    fn roughly_at(&self, kind: usize, anchor: Vector2<f64>) -> Vec<Group> {
         let setting = (self.settings)(kind, anchor);
         let starts = models(&self.free[kind]).flat_map(|model| self.starts(anchor, model, CORNERS));
-        chains(&setting, &starts.collect::<Vec<_>>(), self.threads)
+        let starts: Vec<_> = starts.collect();
+        selection::rough_groups(&setting, &starts, self.threads, &|_| ())
+    }
+
+    /// Gaits of a kind through a shape, the fastest first.
+    fn gaits_at(&self, kind: usize, anchor: Vector2<f64>) -> Vec<Polished> {
+        let groups = self.roughly_at(kind, anchor);
+        finished(&(self.settings)(kind, anchor), &groups, self.threads)
     }
 
     /// Closed polygons through a shape near a gait and its images.
@@ -76,10 +98,27 @@ impl Joining<'_, '_> {
         [itself, along, across, both].map(through)
     }
 
-    /// The fastest of each kind through a shape, certified or not.
-    fn at(&self, anchor: Vector2<f64>) -> Result<Three, usize> {
-        let of = |kind| self.gaits_at(kind, anchor).into_iter().next().ok_or(kind);
+    /// The fastest of each kind through a shape to which rough polygons lead, certified or not.
+    fn at(&self, rough: &RoughlyJoined) -> Result<Three, usize> {
+        let of = |kind: usize| {
+            let setting = (self.settings)(kind, rough.shape);
+            let gaits = finished(&setting, &rough.groups[kind], self.threads);
+            gaits.into_iter().next().ok_or(kind)
+        };
         Ok([of(0)?, of(1)?, of(2)?])
+    }
+
+    /// Rough polygons of each kind through a shape.
+    fn roughly(&self, shape: Vector2<f64>) -> RoughlyJoined {
+        let groups = [0, 1, 2].map(|kind| self.roughly_at(kind, shape));
+        let speeds = groups
+            .each_ref()
+            .map(|groups| groups.first().map_or(0.0, Group::speed));
+        RoughlyJoined {
+            shape,
+            cost: self.cost(speeds),
+            groups,
+        }
     }
 
     /// The fastest of each kind through a shape, of those known and those found: one that is certified, unless another is faster.
@@ -137,7 +176,14 @@ impl Joining<'_, '_> {
     }
 
     /// The fastest of some gaits, and whether it is certified: one that is goes before another that is as fast.
-    fn fastest(&self, setting: &Setting, all: Vec<Polished>) -> Option<(Polished, bool)> {
+    fn fastest(&self, setting: &Setting, mut all: Vec<Polished>) -> Option<(Polished, bool)> {
+        all.sort_by(|a, b| b.speed.total_cmp(&a.speed));
+        // Many starts lead to one gait, and the short arcs that a certificate may need gain little.
+        all.dedup_by(|other, one| {
+            other.links.len() == one.links.len() && one.speed - other.speed < SAME * one.speed
+        });
+        let least = all.first()?.speed * (1.0 - BEHIND);
+        all.retain(|one| one.speed >= least);
         let certified = in_parallel(
             all.len(),
             self.threads,
@@ -161,15 +207,24 @@ impl Joining<'_, '_> {
         let mut without = 0;
         let mut found = Vec::new();
         let shapes = self.promising();
+        let mut rough = Vec::with_capacity(shapes.len());
         for (number, shape) in shapes.iter().enumerate() {
-            match self.at(*shape) {
-                Ok(three) => found.push((*shape, three)),
+            rough.push(self.roughly(*shape));
+            watch(0.3 * (number + 1) as f64 / shapes.len() as f64);
+        }
+        rough.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        for (number, rough) in rough.iter().enumerate() {
+            if found.len() >= FINISHED {
+                break;
+            }
+            match self.at(rough) {
+                Ok(three) => found.push((rough.shape, three)),
                 Err(kind) => without = without.max(kind),
             }
-            watch(0.6 * (number + 1) as f64 / shapes.len() as f64);
+            watch(0.3 + 0.3 * ((number + 1) as f64 / FINISHED as f64).min(1.0));
         }
         let cheaper =
-            |(_, a): &(_, Three), (_, b): &(_, Three)| self.cost(a).total_cmp(&self.cost(b));
+            |(_, a): &(_, Three), (_, b): &(_, Three)| self.cost_of(a).total_cmp(&self.cost_of(b));
         found.sort_by(cheaper);
         found.truncate(MOVED);
         let moved = in_parallel(
@@ -198,10 +253,10 @@ impl Joining<'_, '_> {
             for _ in 0..MOVES {
                 let ways = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
                 let better = ways.into_iter().find_map(|way| {
-                    let there = shape + Vector2::from(way) * step;
+                    let there = shape + Vector2::from(way) * (step * self.region.scale());
                     tried += 1;
                     let moved = self.moved(there, &three)?;
-                    (self.cost(&moved) < self.cost(&three) - 1e-4).then_some((there, moved))
+                    (self.cost_of(&moved) < self.cost_of(&three) - 1e-4).then_some((there, moved))
                 });
                 let Some(better) = better else { break };
                 (shape, three) = better;
@@ -210,17 +265,19 @@ impl Joining<'_, '_> {
         (shape, three, tried)
     }
 
-    /// What joining costs all three, as shares of their speeds.
-    fn cost(&self, three: &Three) -> f64 {
-        let costs = three.iter().zip(self.free);
-        costs
-            .map(|(joined, free)| 1.0 - joined.speed / free[0].speed)
-            .sum()
+    /// Cost of joining for gaits of these speeds, one of each kind, as shares of the speeds of those that need not join.
+    fn cost(&self, speeds: [f64; 3]) -> f64 {
+        let costs = speeds.iter().zip(self.free);
+        costs.map(|(speed, free)| 1.0 - speed / free[0].speed).sum()
+    }
+
+    fn cost_of(&self, three: &Three) -> f64 {
+        self.cost(three.each_ref().map(|joined| joined.speed))
     }
 
     /// The three near others whose common shape is close by.
     fn moved(&self, anchor: Vector2<f64>, three: &Three) -> Option<Three> {
-        if self.region.overstepped(&anchor) > -MARGIN {
+        if self.region.overstepped(&anchor) > -MARGIN * self.region.scale() {
             return None;
         }
         let of = |kind: usize| near(&(self.settings)(kind, anchor), &three[kind]);
@@ -255,7 +312,7 @@ impl Joining<'_, '_> {
         for k in 0..GRID * GRID {
             let place = |k: usize| reach * (2.0 * k as f64 / (GRID - 1) as f64 - 1.0);
             let phi = Vector2::new(place(k / GRID), place(k % GRID));
-            if self.region.overstepped(&phi) > -MARGIN {
+            if self.region.overstepped(&phi) > -MARGIN * self.region.scale() {
                 continue;
             }
             let cost = |models: &Vec<Outlined>| {
@@ -272,9 +329,10 @@ impl Joining<'_, '_> {
             shapes.push((outlines.iter().map(cost).sum(), phi));
         }
         shapes.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let apart_by = APART * self.region.scale();
         let mut apart: Vec<Vector2<f64>> = Vec::new();
         for (_, phi) in shapes {
-            if apart.len() < TRIED && apart.iter().all(|other| (other - phi).amax() > APART) {
+            if apart.len() < TRIED && apart.iter().all(|other| (other - phi).amax() > apart_by) {
                 apart.push(phi);
             }
         }
