@@ -37,8 +37,8 @@ pub(crate) struct HeightMap {
     /// Lay this gait over the map and hold the area rule against what it swims; may be given several times
     #[arg(long = "gait", value_name = "GAIT", value_parser = gait)]
     gaits: Vec<GaitSpec>,
-    /// Write the map: .svg or .png as a figure, .csv as a table of φ₁, φ₂, H at 201 × 201 nodes
-    #[arg(short, long, value_name = "FILE.svg|.png|.csv")]
+    /// Write the map: .svg, .png or .pdf as a figure, .csv as a table of φ₁, φ₂, H at 201 × 201 nodes
+    #[arg(short, long, value_name = "FILE.svg|.png|.pdf|.csv")]
     output: Option<PathBuf>,
 }
 
@@ -90,7 +90,7 @@ impl HeightMap {
     /// Computes the map, writes the figure or table, and prints the output.
     pub(crate) fn run(self, output: Output) -> Outcome {
         self.output.as_deref().map_or(Ok(()), may_be_written)?;
-        let kinds = [Kind::Svg, Kind::Png, Kind::Csv];
+        let kinds = [Kind::Svg, Kind::Png, Kind::Pdf, Kind::Csv];
         let kind = self.output.as_deref().map(|path| Kind::of(path, &kinds));
         let kind = kind.transpose()?;
         let mut context = Context::on_disk();

@@ -39,8 +39,8 @@ pub(crate) struct Simulate {
     /// Write the path of the middle link as a table: cycle, u, joint angles, pose
     #[arg(long, value_name = "FILE.csv")]
     trajectory: Option<PathBuf>,
-    /// Draw the swimmer: .svg or .png for snapshots along its path over all cycles, .gif for the first cycle in motion
-    #[arg(long, value_name = "FILE.svg|.png|.gif")]
+    /// Draw the swimmer: .svg, .png or .pdf for snapshots along its path over all cycles, .gif for the first cycle in motion
+    #[arg(long, value_name = "FILE.svg|.png|.pdf|.gif")]
     picture: Option<PathBuf>,
     #[command(flatten)]
     playing: played::Playing,
@@ -187,7 +187,7 @@ impl Simulate {
 
 /// Format of a picture by its file name, checked before anything is computed.
 fn picture_kind(path: &Path) -> Outcome<Kind> {
-    let kind = Kind::of(path, &[Kind::Svg, Kind::Png, Kind::Gif])?;
+    let kind = Kind::of(path, &[Kind::Svg, Kind::Png, Kind::Pdf, Kind::Gif])?;
     may_be_written(path)?;
     Ok(kind)
 }

@@ -1,6 +1,8 @@
 //! The height map as a figure: colours for height, lines for the zero-level curves and for gaits.
 
+use contour::ContourBuilder;
 use gait_optimizer::{HeightMap, LevelCurve, Row};
+use nalgebra::DMatrix;
 use operations::height_map::NamedGait;
 use plotters::prelude::*;
 use swimmer_model::Gait as _;
@@ -34,8 +36,8 @@ const TOP: i32 = 44;
 const GAP: i32 = 22;
 const BAR: i32 = 20;
 const RIGHT: i32 = 84;
-/// Colour cells in each direction.
-const CELLS: u16 = 260;
+/// Nodes in each direction between which the edges of the colours are interpolated.
+const NODES: usize = 131;
 /// Steps of colour on either side of zero.
 const SHADES: i32 = 24;
 /// Points a gait is drawn with.
@@ -89,9 +91,7 @@ fn draw(figure: &Figure<'_>, area: &Area<'_>) -> Result<(), String> {
     let (_, upper) = area.split_vertically(0);
     let (map_area, bar_area) = upper.split_horizontally((LEFT + MAP) * SCALE);
     let half_width = figure.map.half_width();
-    // Cells are coloured by the height at their middle.
-    let count = usize::from(CELLS);
-    let grid = figure.map.grid(figure.row, 2 * count + 1);
+    let grid = figure.map.grid(figure.row, NODES);
     let largest = grid.heights.amax().max(f64::MIN_POSITIVE);
 
     let (map_area, _) = map_area.split_vertically((TOP + MAP + BOTTOM) * SCALE);
@@ -102,31 +102,18 @@ fn draw(figure: &Figure<'_>, area: &Area<'_>) -> Result<(), String> {
         .y_label_area_size((LEFT - MARGIN) * SCALE)
         .build_cartesian_2d(-half_width..half_width, -half_width..half_width)
         .map_err(|error| said(&error))?;
-    let cell = 2.0 * half_width / f64::from(CELLS);
-    let edge = |index: usize| -half_width + cell * index as f64;
-    for j in 0..count {
-        let shade_at = |i: usize| {
-            let height = grid.heights.get((2 * i + 1, 2 * j + 1)).copied();
-            shade(height.unwrap_or(0.0), largest)
-        };
-        // Neighbours of one colour are one rectangle; it reaches under the next ones, so that no seam shows.
-        let mut from = 0;
-        while from < count {
-            let same = shade_at(from);
-            let to = (from + 1..count)
-                .find(|&i| shade_at(i) != same)
-                .unwrap_or(count);
-            let corner = (
-                (edge(to) + 0.5 * cell).min(half_width),
-                (edge(j + 1) + 0.5 * cell).min(half_width),
-            );
-            let rectangle = Rectangle::new([(edge(from), edge(j)), corner], color(same).filled());
-            chart
-                .draw_series(std::iter::once(rectangle))
-                .map_err(|error| said(&error))?;
-            from = to;
-        }
-    }
+    let lowest = Rectangle::new(
+        [(-half_width, -half_width), (half_width, half_width)],
+        color(-SHADES).filled(),
+    );
+    chart
+        .draw_series(std::iter::once(lowest))
+        .map_err(|error| said(&error))?;
+    let regions = regions(&grid.heights, half_width, largest)?;
+    let regions = regions
+        .into_iter()
+        .map(|region| Polygon::new(region.edge, color(region.shade).filled()));
+    chart.draw_series(regions).map_err(|error| said(&error))?;
     // Broad, so that they show on either side of a gait that runs along them.
     for curve in figure.curves {
         let points = curve.points.iter().map(|phi| (phi.x, phi.y));
@@ -177,6 +164,71 @@ fn draw(figure: &Figure<'_>, area: &Area<'_>) -> Result<(), String> {
     let named = figure.gaits.iter().map(|named| named.name.as_str());
     let named = named.zip(CURVES.iter().copied().cycle());
     legend(area, (LEFT, TOP + MAP + BOTTOM), named)
+}
+
+/// Region of the map that is painted with one colour, before the regions inside it.
+struct Region {
+    /// Closed curve along which the height is constant, and where the map ends along its edge.
+    edge: Vec<Point>,
+    shade: i32,
+    area: f64,
+}
+
+/// Regions of the colours by marching squares, larger ones first: painted in this order they need no holes, because level curves do
+/// not cross. `heights` are at square nodes over angles up to `half_width` \[rad\], φ₁ along the columns.
+///
+/// # Errors
+/// Errors of the contour library.
+fn regions(heights: &DMatrix<f64>, half_width: f64, largest: f64) -> Result<Vec<Region>, String> {
+    let (across, up) = heights.shape();
+    let step = 2.0 * half_width / across.saturating_sub(1).max(1) as f64;
+    let shades = -SHADES + 1..=SHADES;
+    let levels: Vec<f64> = shades
+        .clone()
+        .map(|shade| (f64::from(shade) - 0.5) / f64::from(SHADES) * largest)
+        .collect();
+    // The library puts the first node half a step from its origin.
+    let origin = -half_width - 0.5 * step;
+    let contours = ContourBuilder::new(across, up, true)
+        .x_origin(origin)
+        .y_origin(origin)
+        .x_step(step)
+        .y_step(step)
+        .contours(heights.as_slice(), &levels)
+        .map_err(|error| said(&error))?;
+    let mut regions = Vec::new();
+    for (contour, shade) in contours.iter().zip(shades) {
+        for polygon in contour.geometry() {
+            let outer = std::iter::once((polygon.exterior(), shade));
+            // Inside a hole the height is below the level.
+            let holes = polygon.interiors().iter().map(|hole| (hole, shade - 1));
+            for (ring, shade) in outer.chain(holes) {
+                let edge: Vec<Point> = ring
+                    .coords()
+                    .map(|at| {
+                        let within = |angle: f64| angle.clamp(-half_width, half_width);
+                        (within(at.x), within(at.y))
+                    })
+                    .collect();
+                let area = area(&edge);
+                regions.push(Region { edge, shade, area });
+            }
+        }
+    }
+    // A stable order: of regions that fill the map, the higher level comes last.
+    regions.sort_by(|one, other| other.area.total_cmp(&one.area));
+    Ok(regions)
+}
+
+/// Area inside a closed polygon.
+fn area(corners: &[Point]) -> f64 {
+    let next = corners.iter().cycle().skip(1);
+    let twice: f64 = corners
+        .iter()
+        .zip(next)
+        .map(|(from, to)| from.0 * to.1 - to.0 * from.1)
+        .sum();
+    0.5 * twice.abs()
 }
 
 /// The colour bar, with the exponent of its numbers on top.
@@ -231,15 +283,7 @@ fn bar(figure: &Figure<'_>, area: &Area<'_>, largest: f64) -> Result<(), String>
     Ok(())
 }
 
-/// The step of colour for a height, from −`SHADES` to `SHADES`.
-#[allow(clippy::cast_possible_truncation)] // At most a few dozen.
-fn shade(height: f64, largest: f64) -> i32 {
-    (height / largest * f64::from(SHADES))
-        .round()
-        .clamp(-f64::from(SHADES), f64::from(SHADES)) as i32
-}
-
-/// The colour of a step.
+/// The colour of a step between −`SHADES` and `SHADES`.
 fn color(shade: i32) -> RGBColor {
     let place = 5.0 * (1.0 + f64::from(shade) / f64::from(SHADES));
     let below = place.floor().clamp(0.0, 9.0);
@@ -277,4 +321,43 @@ fn superscript(exponent: f64) -> String {
             _ => '⁹',
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_place_has_the_colour_of_its_height() {
+        // Hills, hollows and a saddle, which give regions inside regions.
+        let count = 61;
+        let place = |k: usize| 2.0 * (k as f64 / 30.0 - 1.0);
+        let height = |x: f64, y: f64| (2.0 * x).sin() * (1.5 * y).cos() + 0.3 * x;
+        let heights = DMatrix::from_fn(count, count, |i, j| height(place(i), place(j)));
+        let largest = heights.amax();
+        let regions = regions(&heights, 2.0, largest).unwrap();
+        let inside = |edge: &[Point], (x, y): Point| {
+            let next = edge.iter().cycle().skip(1);
+            let crossings = edge.iter().zip(next).filter(|(from, to)| {
+                (from.1 > y) != (to.1 > y)
+                    && x < from.0 + (y - from.1) / (to.1 - from.1) * (to.0 - from.0)
+            });
+            crossings.count() % 2 == 1
+        };
+        let mut worst = 0.0_f64;
+        for i in 0..40 {
+            for j in 0..40 {
+                let at = (
+                    -1.9 + 3.8 / 39.0 * f64::from(i),
+                    -1.9 + 3.8 / 39.0 * f64::from(j),
+                );
+                let painted = regions.iter().rfind(|region| inside(&region.edge, at));
+                let shade = painted.map_or(-SHADES, |region| region.shade);
+                let exact = height(at.0, at.1) / largest * f64::from(SHADES);
+                worst = worst.max((f64::from(shade) - exact).abs());
+            }
+        }
+        // Half a shade, and what linear interpolation leaves.
+        assert!(worst < 0.6, "{worst}");
+    }
 }

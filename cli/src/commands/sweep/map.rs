@@ -36,8 +36,8 @@ pub(crate) struct Map {
     /// Quantity of the map
     #[arg(long, value_enum, default_value_t = MapQuantity::Displacement)]
     quantity: MapQuantity,
-    /// Write the picture: .svg, or .png in pixels
-    #[arg(short, long, value_name = "FILE.svg|.png")]
+    /// Write the picture: .svg, .png in pixels, or .pdf for print
+    #[arg(short, long, value_name = "FILE.svg|.png|.pdf")]
     output: Option<PathBuf>,
     /// Write the map's numbers as JSON, which the lab page reads
     #[arg(long, value_name = "FILE.json")]
@@ -90,7 +90,7 @@ impl Map {
         let kind = match &self.output {
             Some(path) => {
                 may_be_written(path)?;
-                Some(Kind::of(path, &[Kind::Svg, Kind::Png])?)
+                Some(Kind::of(path, &[Kind::Svg, Kind::Png, Kind::Pdf])?)
             }
             None => None,
         };
