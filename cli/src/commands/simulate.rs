@@ -40,7 +40,7 @@ pub(crate) struct Simulate {
     #[arg(long, value_name = "FILE.csv")]
     trajectory: Option<PathBuf>,
     /// Draw the swimmer: .svg, .png or .pdf for snapshots along its path over all cycles, .gif for the first cycle in motion
-    #[arg(long, value_name = "FILE.svg|.png|.pdf|.gif")]
+    #[arg(long, value_name = "FILE")]
     picture: Option<PathBuf>,
     #[command(flatten)]
     playing: played::Playing,
