@@ -1,6 +1,6 @@
 //! The `swimmer` command: parses, calls, prints, draws. No physics and no protocol live here.
 //!
-//! Entry points: [`run`] is the whole command, arguments in and exit status out; [`answer`] gives the JSON document of one
+//! Entry points: [`run`] is the whole command, arguments in and exit status out; [`run_captured`] gives the JSON document of one
 //! command to a caller in the same process (the Python wheel), which keeps its own standard output, its own Ctrl-C and its own
 //! threads.
 
