@@ -132,6 +132,8 @@ pub struct Controller {
     forward_cycles: u32,
     worst_heading_rad: f64,
     outside: u32,
+    /// The last cycle confirmed a departure that nothing explains.
+    unexplained: bool,
     operator_stop: bool,
     reports: Vec<CycleReport>,
     ending: Option<Ending>,
@@ -179,6 +181,7 @@ impl Controller {
             worst_heading_rad: 0.0,
             outside: 0,
             operator_stop: false,
+            unexplained: false,
             reports: Vec::new(),
             ending: None,
         }
@@ -277,12 +280,15 @@ impl Controller {
         }
     }
 
-    /// Ends the run if the robot cannot do what is requested. Gains and drift are learned instead.
+    /// Ends the run if the robot cannot do what is requested. Gains and drift are learned instead. A departure that nothing explains
+    /// may be the tracking's: it ends the run if the next cycle shows it too.
     fn end_at_departure(&mut self, likeness: Option<Likeness>) {
-        if let Some(likeness) = likeness
-            && !matches!(likeness, Likeness::Gain(_) | Likeness::Drift(_))
-        {
-            self.end(Ending::Departed(likeness));
+        let unexplained = matches!(likeness, Some(Likeness::WrongGait(None)));
+        let repeated = std::mem::replace(&mut self.unexplained, unexplained);
+        match likeness {
+            None | Some(Likeness::Gain(_) | Likeness::Drift(_)) => {}
+            Some(Likeness::WrongGait(None)) if !repeated => {}
+            Some(likeness) => self.end(Ending::Departed(likeness)),
         }
     }
 

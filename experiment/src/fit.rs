@@ -18,6 +18,8 @@ const TIME_STEP: f64 = 0.01;
 /// Parameters: start (x, y, heading), gain, drift (x, y), delay.
 const COUNT: usize = 7;
 const ITERATIONS: usize = 5;
+/// Share of a cycle's poses that may be outliers.
+const OUTLIERS: f64 = 0.2;
 /// Share of a cycle at its start and at its end that the net motion is measured over.
 const END: f64 = 0.15;
 
@@ -144,6 +146,28 @@ pub(crate) fn fit(
     Some(fit)
 }
 
+/// Returns the fit without the poses that lie farthest from it, which a camera system gives in bursts when markers are hidden; `None`
+/// if there are too few poses.
+pub(crate) fn fit_without_outliers(
+    basis: &Basis,
+    poses: &[Pose],
+    began_s: f64,
+    model_errors: [f64; 2],
+) -> Option<Fit> {
+    let mut fitted = fit(basis, poses, began_s, model_errors)?;
+    // Twice: the first fit is drawn to the outliers.
+    for _ in 0..2 {
+        let mut kept = poses.to_vec();
+        let far = |pose: &Pose| fitted.deviation(basis, pose, began_s, model_errors);
+        kept.sort_by(|one, other| far(one).total_cmp(&far(other)));
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a share of a count
+        kept.truncate(((1.0 - OUTLIERS) * poses.len() as f64) as usize);
+        kept.sort_by(|one, other| one.time_s.total_cmp(&other.time_s));
+        fitted = fit(basis, &kept, began_s, model_errors)?;
+    }
+    Some(fitted)
+}
+
 fn weights(pose: &Pose, [position, heading]: [f64; 2]) -> [f64; 2] {
     [
         1.0 / (pose.sigma_position_m.powi(2) + position.powi(2)),
@@ -201,6 +225,13 @@ impl Fit {
         (rows, turn_row, off, turn_off)
     }
 
+    /// Squared residuals of a pose over their expected variances.
+    fn deviation(&self, basis: &Basis, pose: &Pose, began_s: f64, model_errors: [f64; 2]) -> f64 {
+        let (_, _, off, turn_off) = self.residual(basis, pose, began_s);
+        let [weight, turn_weight] = weights(pose, model_errors);
+        off.norm_squared() * weight + turn_off * turn_off * turn_weight
+    }
+
     fn root_mean_square(
         &self,
         basis: &Basis,
@@ -208,11 +239,9 @@ impl Fit {
         began_s: f64,
         model_errors: [f64; 2],
     ) -> f64 {
-        let squares = poses.iter().map(|pose| {
-            let (_, _, off, turn_off) = self.residual(basis, pose, began_s);
-            let [weight, turn_weight] = weights(pose, model_errors);
-            off.norm_squared() * weight + turn_off * turn_off * turn_weight
-        });
+        let squares = poses
+            .iter()
+            .map(|pose| self.deviation(basis, pose, began_s, model_errors));
         (squares.sum::<f64>() / (3.0 * poses.len() as f64)).sqrt()
     }
 

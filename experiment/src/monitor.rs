@@ -6,11 +6,13 @@ use forecast::Tank;
 use nalgebra::Vector2;
 use swimmer_model::Model;
 
-use crate::fit::{Basis, Fit, fit, model_errors};
+use crate::fit::{Basis, Fit, fit, fit_without_outliers, model_errors};
 use crate::{Course, Pose};
 
 /// A misfit above this is no noise: the course is another one.
 const LARGEST_MISFIT: f64 = 3.0;
+/// A misfit of the cycle without outliers above this is no noise.
+const LARGEST_MISFIT_OF_MOST: f64 = 2.0;
 /// Another course explains a misfit if it leaves less than this share.
 const EXPLAINED: f64 = 0.5;
 /// Gains and drifts \[m/s\] that count as departures if they are also significant.
@@ -223,7 +225,17 @@ impl Monitor {
         let mut cycle = self.cycle.take()?;
         cycle.poses.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
         let errors = model_errors(&cycle.basis.course);
-        let fitted = fit(&cycle.basis, &cycle.poses, cycle.began_s, errors);
+        let mut fitted = fit(&cycle.basis, &cycle.poses, cycle.began_s, errors);
+        if fitted
+            .as_ref()
+            .is_some_and(|fit| fit.misfit > LARGEST_MISFIT)
+        {
+            // A burst of outliers is no departure: most poses are as predicted.
+            let most = fit_without_outliers(&cycle.basis, &cycle.poses, cycle.began_s, errors);
+            fitted = most
+                .filter(|fit| fit.misfit <= LARGEST_MISFIT_OF_MOST)
+                .or(fitted);
+        }
         let number = self.number;
         self.number += 1;
         let says_something = cycle.says_something();

@@ -39,9 +39,30 @@ impl Pose {
 /// Errors of neighbouring frames are correlated by the filter: this many count as one.
 pub(crate) const FRAMES_PER_SAMPLE: f64 = 4.0;
 
-/// Mean of some poses of a robot at rest; its deviations are those of the mean. `None` without poses.
+/// Deviations from the median beyond which a pose of a robot at rest is an outlier.
+const OUTLYING: f64 = 3.0;
+
+/// Mean of some poses of a robot at rest, without outliers; its deviations are those of the mean. `None` without poses.
 pub(crate) fn mean(poses: &[Pose]) -> Option<Pose> {
     let first = poses.first()?;
+    let turned = |pose: &Pose| wrapped_angle(pose.heading_rad - first.heading_rad);
+    let middle = [
+        median(poses, |pose| pose.x_m)?,
+        median(poses, |pose| pose.y_m)?,
+        median(poses, turned)?,
+    ];
+    let is_near = |pose: &&Pose| {
+        let off = (pose.x_m - middle[0]).hypot(pose.y_m - middle[1]);
+        off <= OUTLYING * pose.sigma_position_m
+            && (turned(pose) - middle[2]).abs() <= OUTLYING * pose.sigma_heading_rad
+    };
+    // A robot that drifts fast leaves none near the median: then all count.
+    let near: Vec<&Pose> = poses.iter().filter(is_near).collect();
+    let poses = if 2 * near.len() >= poses.len() {
+        near
+    } else {
+        poses.iter().collect()
+    };
     let (mut weights, mut turn_weights) = (0.0, 0.0);
     let (mut position, mut time, mut turn) = (Vector2::zeros(), 0.0, 0.0);
     for pose in poses {
@@ -51,7 +72,7 @@ pub(crate) fn mean(poses: &[Pose]) -> Option<Pose> {
         turn_weights += turn_weight;
         position += Vector2::new(pose.x_m, pose.y_m) * weight;
         time += pose.time_s * weight;
-        turn += wrapped_angle(pose.heading_rad - first.heading_rad) * turn_weight;
+        turn += turned(pose) * turn_weight;
     }
     Some(Pose {
         time_s: time / weights,
@@ -61,4 +82,10 @@ pub(crate) fn mean(poses: &[Pose]) -> Option<Pose> {
         sigma_position_m: (FRAMES_PER_SAMPLE / weights).sqrt(),
         sigma_heading_rad: (FRAMES_PER_SAMPLE / turn_weights).sqrt(),
     })
+}
+
+fn median(poses: &[Pose], value: impl Fn(&Pose) -> f64) -> Option<f64> {
+    let mut values: Vec<f64> = poses.iter().map(value).collect();
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
 }

@@ -181,7 +181,7 @@ mod tests {
             text.starts_with("%PDF-") && text.contains("/MediaBox[0 0 30 15]"),
             "{text}"
         );
-        assert!(!text.contains("/Image"));
+        assert!(!text.contains("/Subtype/Image"));
     }
 
     #[test]
