@@ -50,10 +50,8 @@ fn recordings_survive_a_full_disk() {
     sleep(Duration::from_millis(500));
     let words = "robot log run.mcap --seconds 4 --port robot";
     let words: Vec<&str> = words.split(' ').collect();
-    // 64 kB: a log grows by some 30 kB a second.
-    let logged = on_a_small_disk(folder.path(), 128, &words)
-        .output()
-        .unwrap();
+    // 20 kB: a log grows by some 8 kB a second.
+    let logged = on_a_small_disk(folder.path(), 40, &words).output().unwrap();
     let logged = Ran::from(logged).with_status(1);
     assert!(logged.stderr.contains("the link log ends here"), "{logged}");
     crate::binary::interrupt(&twin);
