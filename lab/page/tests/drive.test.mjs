@@ -26,7 +26,7 @@ after(async () => {
 async function eStop(tab, other = tab) {
   const begun = performance.now();
   await tab.space();
-  await other.until(() => document.querySelector("#state").dataset.state === "EStopped" && document.querySelector("#room-drive").textContent.includes("pulsesoff"), undefined, "pulses off");
+  await other.until(() => document.querySelector("#state").dataset.state === "EStopped" && document.querySelector("#panel-drive").textContent.includes("pulsesoff"), undefined, "pulses off");
   return performance.now() - begun;
 }
 
@@ -39,7 +39,7 @@ for (const name of Object.keys(BROWSERS)) {
     const before = await path();
     await tab.until((before) => document.querySelector("#setpoint").getAttribute("cx") !== before, before, "joints that move");
     // The focus is on a button that does something else, and a number is being typed.
-    await tab.evaluate(() => document.querySelector('#room-drive input[type="number"]').focus());
+    await tab.evaluate(() => document.querySelector('#panel-drive input[type="number"]').focus());
     const waited = await eStop(tab);
     console.log(`# ${name}: space bar to "pulses off" on the page ${waited.toFixed(0)} ms`);
     assert.ok(waited < LEASE, `${waited} ms`);
@@ -72,7 +72,7 @@ for (const name of Object.keys(BROWSERS)) {
     assert.ok(waited < LEASE, `${waited} ms`);
     await driver.close();
     await watcher.says("Nobody drives");
-    await watcher.evaluate(() => [...document.querySelectorAll("#room-drive button")].find(({ textContent }) => textContent === "Drive").click());
+    await watcher.evaluate(() => [...document.querySelectorAll("#panel-drive button")].find(({ textContent }) => textContent === "Drive").click());
     await watcher.says("This page drives");
     await watcher.push("#clear");
     await watcher.play();

@@ -90,7 +90,7 @@ export class Driver extends Tab {
   }
 
   says(words) {
-    return this.until((words) => document.querySelector("#room-drive").textContent.includes(words), words, `"${words}"`);
+    return this.until((words) => document.querySelector("#panel-drive").textContent.includes(words), words, `"${words}"`);
   }
 
   /** Uploads Explore's gait and plays it until told otherwise. */

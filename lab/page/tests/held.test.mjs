@@ -195,7 +195,7 @@ for (const name of Object.keys(BROWSERS)) {
     await says("holds no key");
     await type(KEY.toUpperCase());
     await says("Key: as typed");
-    assert.ok(!(await tab.text("#room-drive")).toLowerCase().includes(KEY), "the key is not shown");
+    assert.ok(!(await tab.text("#panel-drive")).toLowerCase().includes(KEY), "the key is not shown");
     await tab.close();
 
     // The robot has it too: what is typed drives it.

@@ -36,7 +36,7 @@ const ROOMS = ["explore", "drive", "calibrate", "maps"];
 /** Opens a tab of the page and waits for its content. */
 async function enter(tab, room) {
   await tab.evaluate((room) => document.getElementById(`tab-${room}`).click(), room);
-  await tab.until((room) => document.querySelector(`#room-${room}:not([hidden])`)?.childElementCount > 0, room, "the room");
+  await tab.until((room) => document.querySelector(`#panel-${room}:not([hidden])`)?.childElementCount > 0, room, "the room");
   await tab.settled();
 }
 

@@ -25,7 +25,7 @@ for (const [browser, tree] of [["chromium", chromiums]]) {
     const tab = await Tab.open(launched);
     for (const room of ROOMS) {
       await tab.evaluate((room) => document.getElementById(`tab-${room}`).click(), room);
-      await tab.until((room) => document.querySelector(`#room-${room}:not([hidden])`)?.childElementCount > 0, room, "the room");
+      await tab.until((room) => document.querySelector(`#panel-${room}:not([hidden])`)?.childElementCount > 0, room, "the room");
       await tab.settled();
       const told = await tree(tab);
       assert.ok(told.length > ROOMS.length, `${room}: only ${told.length} things that can be used`);

@@ -38,7 +38,7 @@ export function App() {
               id={`tab-${id}`}
               role="tab"
               aria-selected={open.value === id}
-              aria-controls={`tab-${id}`}
+              aria-controls={`panel-${id}`}
               tabIndex={open.value === id ? 0 : -1}
               title={`${about} (Alt+${key})`}
               onClick={() => openRoom(id)}
@@ -55,7 +55,7 @@ export function App() {
       </header>
       <main>
         {TABS.filter(({ id }) => visited.has(id)).map(({ id, Panel }) => (
-          <div key={id} id={`tab-${id}`} class="panel" role="tabpanel" aria-labelledby={`tab-${id}`} hidden={open.value !== id}>
+          <div key={id} id={`panel-${id}`} class="panel" role="tabpanel" aria-labelledby={`tab-${id}`} hidden={open.value !== id}>
             <Panel />
           </div>
         ))}
