@@ -2,13 +2,17 @@
 
 use gait_optimizer::{
     AtlasProblem, Bounds, Branch, DisplacementError, DisplacementProblem, EfficiencyProblem,
-    Heading, HeightMap, InvalidProblem, SpeedProblem, TurningProblem, atlas, certify, displacement,
-    efficiency, fastest, turning,
+    Heading, HeightMap, InvalidProblem, OptimalGait, SidewaysProblem, SpeedProblem, SteerProblem,
+    TurningProblem, atlas, certify, displacement, efficiency, fastest, sideways, steer, turning,
 };
+use nalgebra::Vector2;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use swimmer_files::{AnyGait, GaitFile, Objective};
-use swimmer_model::{Link, Links, Medium, Swimmer};
+use swimmer_model::{Link, Links, Medium, Model, Stroke, Swimmer, Tolerance, swim};
 
 use crate::direct::Direct;
+use crate::plane::Pose;
 use crate::speed::by_two_methods;
 
 /// Links of the robot in a perfect fluid, twice as wide as the preset's.
@@ -191,5 +195,190 @@ fn links_that_differ_in_drag_are_not_alike() {
             best.gait.certificate.pass() && !best.gait.symmetric,
             "{name}"
         );
+    }
+}
+
+/// Size of the perturbations \[rad\].
+const PUSH: f64 = 0.03;
+/// Harmonics of the perturbations.
+const HARMONICS: u32 = 3;
+
+/// Compares a gait with random neighbours within its bounds and without net rotation: the model alone swims them, and none is better.
+fn no_neighbour_is_better(name: &str, gait: &OptimalGait, value: impl Fn(&Stroke<f64>) -> f64) {
+    let model = Model::new(&gait.swimmer).unwrap();
+    let file = gait.gait_file("");
+    let limit = gait.bounds.max_angle.unwrap();
+    let mut rng = ChaCha8Rng::seed_from_u64(47);
+    let mut wave = || -> Vec<Vector2<f64>> {
+        let of_joint = |rng: &mut ChaCha8Rng| -> Vec<[f64; 2]> {
+            let mut number = || rng.random_range(-PUSH..PUSH);
+            (0..HARMONICS).map(|_| [number(), number()]).collect()
+        };
+        let joints = [of_joint(&mut rng), of_joint(&mut rng)];
+        let at = |u: f64| {
+            Vector2::from([0, 1].map(|joint: usize| {
+                let terms = joints[joint].iter().zip(1..);
+                let terms = terms.map(|([cos, sin], k)| {
+                    let (s, c) = (std::f64::consts::TAU * f64::from(k) * u).sin_cos();
+                    cos * c + sin * s
+                });
+                terms.sum::<f64>()
+            }))
+        };
+        file.u.iter().map(|u| at(*u)).collect()
+    };
+    let swum = |pushes: &[(&[Vector2<f64>], f64)]| {
+        let phi = file.phi.iter().enumerate().map(|(at, phi)| {
+            let pushed = pushes.iter().map(|(push, times)| push[at] * *times);
+            pushed
+                .fold(*phi, |sum, push| sum + push)
+                .map(|angle| angle.clamp(-limit, limit))
+        });
+        let file = GaitFile {
+            phi: phi.collect(),
+            ..file.clone()
+        };
+        swim(
+            &model,
+            &AnyGait::from_file(&file).unwrap(),
+            &Tolerance::new(1e-9),
+        )
+    };
+    let best = value(&swum(&[]));
+    let mut compared = 0;
+    for _ in 0..40 {
+        let (one, other) = (wave(), wave());
+        let at = |times: f64| swum(&[(&one, 1.0), (&other, times)]);
+        // Secant method for the share of the second wave that cancels the rotation of the first.
+        let (mut before, mut now) = ((0.0, at(0.0)), (0.1, at(0.1)));
+        for _ in 0..12 {
+            let slope = (now.1.rotation - before.1.rotation) / (now.0 - before.0);
+            if now.1.rotation.abs() < 1e-9 || slope == 0.0 {
+                break;
+            }
+            let next = now.0 - now.1.rotation / slope;
+            before = now;
+            now = (next, at(next));
+        }
+        let (times, neighbour) = now;
+        if times.abs() > 2.0 || neighbour.rotation.abs() > 1e-8 {
+            continue;
+        }
+        compared += 1;
+        let value = value(&neighbour);
+        assert!(value < best, "{name}: {value} beside {best}");
+    }
+    println!("{name}: {compared} neighbours, none better than {best}");
+    assert!(compared >= 8, "{name}: {compared}");
+}
+
+#[test]
+fn sideways_gaits_in_a_perfect_fluid() {
+    for (name, swimmer) in [("preset", Swimmer::perfect_fluid()), ("wide", wide_robot())] {
+        let problem = SidewaysProblem {
+            bounds: Bounds::within(1.2),
+            starts: 12,
+            ..SidewaysProblem::new(swimmer)
+        };
+        let found = sideways(&problem, &|_| ()).unwrap();
+        assert!(found.gait.certificate.pass(), "{name}");
+        let first = found.gait.gait().unwrap();
+        let stroke = swim(
+            &Model::new(&swimmer).unwrap(),
+            &first,
+            &Tolerance::new(1e-11),
+        );
+        let across = stroke.displacement_over_length().y;
+        assert!((across - found.lateral_over_length).abs() < 1e-6, "{name}");
+        no_neighbour_is_better(name, &found.gait, |stroke| {
+            stroke.displacement_over_length().norm()
+        });
+    }
+}
+
+/// Three gaits from one shape: forwards, sideways, and a turn; the polygon through each is swum by the model alone.
+#[test]
+fn gaits_to_steer_by_in_a_perfect_fluid() {
+    let swimmer = Swimmer::perfect_fluid();
+    let problem = SteerProblem {
+        of: SpeedProblem {
+            bounds: Bounds::within(1.2),
+            starts: 12,
+            threads: 2,
+            ..SpeedProblem::new(swimmer, [1.0; 2])
+        },
+        shape: None,
+    };
+    let steering = steer(&problem, &|_| ()).unwrap();
+    let model = Model::new(&swimmer.of_unit_length()).unwrap();
+    let shape = Vector2::from(steering.shape);
+    for (name, joined) in [
+        ("forward", &steering.forward),
+        ("left", &steering.left),
+        ("turn", &steering.turn),
+    ] {
+        assert!(joined.gait.certificate.pass(), "{name}");
+        let file = joined.gait_file("perfect-fluid", false);
+        let ends = [file.phi.first().unwrap(), file.phi.last().unwrap()];
+        assert!(
+            ends.iter().all(|end| (*end - shape).amax() < 1e-9),
+            "{name}"
+        );
+        let sides = file
+            .phi
+            .array_windows()
+            .map(|side| Pose::along(&model, *side));
+        let end = sides.fold(Pose::default(), |pose, side| pose * side);
+        let [x, y, theta] = joined.net;
+        for (have, told) in [(end.x, x), (end.y, y), (end.theta, theta)] {
+            assert!((have - told).abs() < 1e-4, "{name}: {have} {told}");
+        }
+        // No joint turns faster than 1 rad/s.
+        let turns = file.phi.array_windows().zip(file.u.array_windows());
+        let fastest = turns.fold(0.0, |most: f64, ([from, to], [start, end])| {
+            most.max((to - from).amax() / ((end - start) * joined.period))
+        });
+        assert!(fastest < 1.0 + 1e-6, "{name}: {fastest} rad/s");
+        let carried = if name == "turn" {
+            theta.abs()
+        } else {
+            x.hypot(y)
+        };
+        assert!(
+            (carried / joined.period / joined.rate - 1.0).abs() < 1e-6,
+            "{name}"
+        );
+        assert!(joined.rate <= joined.unjoined_rate * (1.0 + 1e-9), "{name}");
+        println!("{name}: {x:.6} {y:.6} {theta:.6} in {:.4} s", joined.period);
+    }
+    assert!(steering.forward.net[2].abs() < 1e-6 && steering.left.net[2].abs() < 1e-6);
+    assert!(steering.turn.net[2] > 0.1);
+}
+
+/// Efficiency gaits of swimmers whose side links differ.
+#[test]
+fn efficient_gaits_with_unequal_side_links() {
+    for (name, front, back) in [("shorter behind", 1.0, 0.8), ("longer in front", 1.2, 0.9)] {
+        let purcell = Swimmer::purcell();
+        let links = Links {
+            front,
+            back,
+            ..purcell.links
+        };
+        let swimmer = Swimmer { links, ..purcell };
+        let found = atlas(&AtlasProblem {
+            bounds: Bounds::within(1.2),
+            starts: 12,
+            threads: 2,
+            ..AtlasProblem::new(swimmer, Objective::Efficiency)
+        })
+        .unwrap();
+        let best = &found
+            .optima
+            .first()
+            .unwrap_or_else(|| panic!("{name}"))
+            .gait;
+        assert!(best.certificate.pass() && !best.symmetric, "{name}");
+        no_neighbour_is_better(name, best, Stroke::efficiency_constant_power);
     }
 }
