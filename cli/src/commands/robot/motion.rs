@@ -161,14 +161,7 @@ pub(super) fn play(access: &Access, play: &Play, output: Output) -> Outcome {
         output.print(&Played::new(&status, true));
         return line.close();
     }
-    output.line(&match play.cycles {
-        Some(cycles) => format!(
-            "Playing {cycles} cycles of {} s: {} and the start. Ctrl-C stops.",
-            play.period,
-            playing::duration(f64::from(cycles) * play.period)
-        ),
-        None => "Playing without end. Ctrl-C stops.".to_owned(),
-    });
+    output.line(&playing::announcement(play.cycles, play.period));
     wait(&mut line, &interrupt, output)?;
     line.close()
 }

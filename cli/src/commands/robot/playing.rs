@@ -104,6 +104,19 @@ impl PlayProgress {
     }
 }
 
+/// Announces a play: its cycles and duration, and how to stop it.
+pub(super) fn announcement(cycles: Option<u32>, period_s: f64) -> String {
+    cycles.map_or_else(
+        || "Playing without end. Ctrl-C stops.".to_owned(),
+        |cycles| {
+            format!(
+                "Playing {cycles} cycles of {period_s} s: {} and the start. Ctrl-C stops.",
+                duration(f64::from(cycles) * period_s)
+            )
+        },
+    )
+}
+
 /// A duration as people say it: `42.0 s`, `5:02 min`, `1:02:03 h`.
 pub(super) fn duration(seconds: f64) -> String {
     if seconds < 59.95 {

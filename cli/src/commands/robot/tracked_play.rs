@@ -81,14 +81,7 @@ pub(super) fn play(
     if let Some(event) = bench.play(name, &table) {
         return Err(Failure::Tried(interrupted(&event)));
     }
-    output.line(&match play.cycles {
-        Some(cycles) => format!(
-            "Playing {cycles} cycles of {} s: {} and the start. Ctrl-C stops.",
-            play.period,
-            playing::duration(f64::from(cycles) * play.period)
-        ),
-        None => "Playing without end. Ctrl-C stops.".to_owned(),
-    });
+    output.line(&playing::announcement(play.cycles, play.period));
     monitored.run(&mut bench)?;
     let status = bench.status()?;
     let result = TrackedOutput {
