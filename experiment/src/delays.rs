@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-/// Frames of the last so many seconds count, so that clocks may drift.
+/// Window of frames that count \[s\]: clocks may drift.
 const WINDOW_S: f64 = 30.0;
 /// Minima that are kept.
 const MOST: usize = 1024;

@@ -22,10 +22,10 @@ use crate::output::Output;
 ///
 /// Poses are those of the middle link with both joints straight: x and y from the tank's centre in metres, the heading from its
 /// length. The way from the straight shape to the one at which the gaits join, and back, belongs to the plan. The plan is the
-/// quickest that was found, of chains of three legs and, beside walls, of ways out to where there is room for them; a leg is a
+/// quickest that was found, of chains of three legs and, next to walls, of ways out to where they fit; a leg is a
 /// number of cycles of one gait, drawn in a little so that the legs together meet the target as the robot plays it: soft start,
 /// tables, servos with their dead band. Where no plan is found with the gaits whose joining costs least, because the swimmer has no
-/// room to bend, gaits are looked for that join at the straight shape.
+/// space to bend, gaits are searched that join at the straight shape.
 ///
 /// `swimmer robot play --playlist` plays what -o writes.
 #[derive(Debug, clap::Args)]
@@ -50,7 +50,7 @@ pub(crate) struct Plan {
     /// Take the gaits from this folder, which `optimize steer -o` wrote, instead of looking for them
     #[arg(long, value_name = "DIR", conflicts_with = "shape")]
     gaits: Option<PathBuf>,
-    /// Write the plan as a playlist, and its gaits beside it
+    /// Write the plan as a playlist, and its gaits next to it
     #[arg(short, long, value_name = "PLAYLIST")]
     output: Option<PathBuf>,
 }

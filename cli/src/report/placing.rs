@@ -3,7 +3,7 @@
 /// Left, top, right and bottom, pixels of the drawing.
 type Box = [i32; 4];
 
-/// What a chart's words must not cover.
+/// Boxes that a chart's words must not cover.
 #[derive(Debug, Default)]
 pub(super) struct Obstacles(Vec<Box>);
 

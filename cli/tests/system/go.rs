@@ -25,8 +25,8 @@ fn go(folder: &std::path::Path, more: &str) -> Ran {
     swimmer_in(folder, &words)
 }
 
-/// The virtual robot is driven past a way-point to a pose. The cameras of its tank say where it is, `swimmer track` and the
-/// tracking file are not asked: the distances are those of the poses at rest, within the tolerance.
+/// The virtual robot is driven past a way-point to a pose, by the cameras of its tank alone. The distances are those of the poses at
+/// rest, within the tolerance.
 #[test]
 fn a_pose_is_reached() {
     let folder = tempfile::tempdir().unwrap();
@@ -67,7 +67,7 @@ fn a_heading_is_held() {
     );
 }
 
-/// What cannot be is refused before any robot or camera is contacted.
+/// Impossible input is refused before any robot or camera is contacted.
 #[test]
 fn bad_input_is_refused_at_once() {
     let folder = tempfile::tempdir().unwrap();

@@ -64,7 +64,7 @@ impl Aim<'_> {
         let mut best: Option<Hit> = None;
         for _ in 0..SHOTS {
             let shot = self.play(&target, chain.steps())?;
-            // What is played ends this far from where the model ends that was aimed.
+            // Distance of the played end from the end at which the model was aimed.
             let missed_by = aimed_at.inverse() * shot.reached;
             aimed_at = target * missed_by.inverse();
             let good = shot.off[0] < GOOD[0] && shot.off[1] < GOOD[1];
@@ -81,7 +81,7 @@ impl Aim<'_> {
             let Some(mut next) = settled(self.nets, &wanted, &chain.legs, 1.0) else {
                 break;
             };
-            // What is played jumps where the period does, by a tick: it does so once.
+            // The played motion jumps by a tick where the period does: let it jump once.
             for (next, before) in next.iter_mut().zip(&chain.legs) {
                 if next.cycles == before.cycles {
                     next.period = next.period.max(before.period);

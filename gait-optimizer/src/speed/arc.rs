@@ -90,7 +90,7 @@ impl Shape {
         place
     }
 
-    /// Contribution of the arc to pose and time, with first and second derivatives.
+    /// Contribution of the arc to pose and time, with first derivatives by its ends and bends.
     pub(crate) fn jet(
         &self,
         model: &Model<f64>,

@@ -1,9 +1,9 @@
 //! Gaits to steer by: the fastest forward, to the left and turning left, all through one common shape at which they join.
 //!
 //! In Stokes flow a gait run backwards undoes itself, so three gaits make six. Each is the fastest of its kind that passes the
-//! shape: there its costate may jump any way, every other condition is that of the fastest gait. Where no chain of
-//! arcs through the shape meets all of them the fastest that was met is told, with the certificate that it fails. The shape is the one at which
-//! the three lose least against the fastest gaits that need not join.
+//! shape. At the shape its costate may jump; every other condition of optimality is that of the fastest gait. If no chain of arcs
+//! through the shape meets all conditions, the fastest gait found is returned with the certificate that it fails. Of the shapes
+//! tried, the one is chosen at which the three gaits lose least against the fastest gaits that need not join.
 
 mod joint;
 mod shape;
@@ -30,12 +30,12 @@ use crate::optimal_gait::OptimalGait;
 use crate::parallel::{Watch, in_parallel};
 use crate::region::Region;
 
-/// What is asked for.
+/// Swimmer, limits and common shape of the gaits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SteerProblem {
-    /// Swimmer, bounds, rates, starts and threads; its heading, period and most corners are not asked.
+    /// Swimmer, bounds, rates, starts and threads; its heading, period and largest number of corners are not used.
     pub of: SpeedProblem,
-    /// The common shape \[rad\]; none: the one at which joining costs least of those that are tried.
+    /// Common shape \[rad\]; `None` for the one of those tried at which joining costs least.
     pub shape: Option<[f64; 2]>,
 }
 
@@ -44,18 +44,18 @@ pub struct SteerProblem {
 pub struct Joined {
     /// |d|/(L T) \[1/s\], or |Δθ|/T \[rad/s\] of the gait that turns.
     pub rate: f64,
-    /// The same of the fastest gait that was met and need not join.
+    /// The same of the fastest gait found that need not join.
     pub unjoined_rate: f64,
-    /// \[s\]
+    /// Duration of a cycle \[s\].
     pub period: f64,
-    /// What a cycle brings in the frame of the middle link at the common shape: x/L, y/L, θ \[rad\].
+    /// Motion of a cycle in the frame of the middle link at the common shape: x/L, y/L, θ \[rad\].
     pub net: [f64; 3],
     /// The gait from the common shape, timed as it shall run, with its certificate.
     pub gait: OptimalGait,
 }
 
 impl Joined {
-    /// What joining costs: the share of the rate that the fastest gait has and this one has not.
+    /// Cost of joining: the share of the fastest gait's rate that this gait loses.
     pub fn cost(&self) -> f64 {
         1.0 - self.rate / self.unjoined_rate
     }
@@ -70,7 +70,7 @@ impl Joined {
 /// Gaits to steer by.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Steering {
-    /// Where all of them join \[rad\].
+    /// Shape at which all of them join \[rad\].
     pub shape: [f64; 2],
     /// Along the mean heading; backward is this one run backwards.
     pub forward: Joined,
@@ -82,9 +82,9 @@ pub struct Steering {
     pub shapes: usize,
 }
 
-/// What the fastest gait of a kind does.
+/// Motion that the fastest gait of a kind maximises.
 type Kind = (Goal, HeadingRule);
-/// The three kinds, in the order of [`Steering`], with what they are called in files and in errors.
+/// The three kinds, in the order of [`Steering`], with their names in files and in errors.
 const KINDS: [(Kind, Objective, &str); 3] = [
     (
         (Goal::Distance, HeadingRule::Forward),
@@ -103,7 +103,7 @@ const KINDS: [(Kind, Objective, &str); 3] = [
     ),
 ];
 
-/// Finds the gaits to steer by, while somebody watches.
+/// Finds the gaits to steer by; `watch` receives the completed share.
 ///
 /// # Errors
 /// [`SpeedError`] where the problem makes no sense, or no gait of a kind can be certified.

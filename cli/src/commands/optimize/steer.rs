@@ -16,8 +16,8 @@ use crate::threads;
 
 /// Find the fastest gaits forward, backward, to either side and round, all through one common shape at which they join
 ///
-/// Backward, right and the turn to the right are the others run backwards, which undoes them exactly. The shape is the one of
-/// those tried at which joining costs the three least; what it costs each is told, and so is a certificate of each.
+/// Backward, right and the turn to the right are the others run backwards, which undoes them exactly. Of
+/// the shapes tried, the one at which joining costs the three least is chosen. The cost and a certificate of each gait are printed.
 #[derive(Debug, Clone, clap::Args)]
 pub(crate) struct Steer {
     /// No servo turns faster than this angle a second; a second one is that of joint 2
@@ -136,7 +136,7 @@ fn add(
     let net = if backwards { there.inverse() } else { there };
     let certificate = &joined.gait.certificate;
     gait.key("name", name)
-        // What a cycle brings in the frame of the middle link at the common shape.
+        // Motion of a cycle in the frame of the middle link at the common shape.
         .key("x_m", net.x * length)
         .key("y_m", net.y * length)
         .key("rotation_rad", net.theta)

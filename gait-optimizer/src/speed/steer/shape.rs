@@ -22,7 +22,7 @@ const MOVED: usize = 4;
 const APART: f64 = 0.3;
 /// The best of them are moved by these steps as long as that costs less.
 const STEPS: [f64; 2] = [0.12, 0.04];
-/// And so many times at most with each of them.
+/// Largest number of moves with each step.
 const MOVES: usize = 6;
 /// Corners of a start, and of those that look again near a gait.
 const CORNERS: usize = 14;
@@ -38,7 +38,7 @@ const BEHIND: f64 = 1e-3;
 /// Gaits of one kind are alike whose speeds differ by less than this share.
 const ALIKE: f64 = 1e-6;
 
-/// What the search for the common shape knows.
+/// Inputs of the search for the common shape.
 pub(super) struct Joining<'a, 'm> {
     pub(super) settings: &'a (dyn Fn(usize, Vector2<f64>) -> Setting<'m> + Sync),
     pub(super) region: &'a Region,
@@ -58,7 +58,7 @@ struct RoughlyJoined {
     groups: [Vec<Group>; 3],
 }
 
-/// What is asked of a free gait to guess what joining it costs.
+/// Outline of a free gait, from which the cost of joining it is estimated.
 struct Outlined {
     /// Over that of the fastest.
     speed: f64,
@@ -125,7 +125,7 @@ impl Joining<'_, '_> {
     /// Where another is, polygons of other numbers of corners near it may show arcs that it lacks.
     ///
     /// # Errors
-    /// The kind of which there is none.
+    /// Index of a kind without a gait.
     pub(super) fn certified_at(
         &self,
         anchor: Vector2<f64>,
