@@ -27,6 +27,8 @@ struct Command {
     status: i32,
     /// Words after `swimmer`.
     words: &'static str,
+    /// Keys of times that this run took, in addition to [`FILTERED`].
+    times: &'static [&'static str],
 }
 
 mod table;
@@ -134,7 +136,7 @@ fn run(session: &Session, overwrite: bool) -> Vec<String> {
         let line = format!("{} --json", command.words);
         let ran = typed(folder.path(), &line).with_status(command.status);
         let _ = ran.json();
-        let printed = filtered(&ran.stdout, folder.path());
+        let printed = filtered(&ran.stdout, folder.path(), command.times);
         let path = document(session, command);
         if overwrite {
             fs::create_dir_all(path.parent().unwrap()).unwrap();
@@ -166,13 +168,16 @@ fn copy(from: &Path, to: &Path) {
     }
 }
 
-/// The document with paths of this machine and values of [`FILTERED`] keys replaced.
-fn filtered(text: &str, folder: &Path) -> String {
+/// The document with paths of this machine and values of [`FILTERED`] keys and of `times` replaced.
+fn filtered(text: &str, folder: &Path, times: &[&str]) -> String {
     let text = text.replace(folder.to_str().unwrap(), "[folder]");
     let filter = |line: &str| {
         let JsonLine { before, value } = JsonLine::of(line);
         match JsonLine::of(line).key() {
-            Some(key) if FILTERED.contains(&key) && !value.starts_with(['{', '[']) => {
+            Some(key)
+                if (FILTERED.contains(&key) || times.contains(&key))
+                    && !value.starts_with(['{', '[']) =>
+            {
                 let comma = if line.ends_with(',') { "," } else { "" };
                 format!("{before}\"[{key}]\"{comma}\n")
             }

@@ -26,6 +26,21 @@ const fn done(document: &'static str, words: &'static str) -> Command {
         document,
         status: 0,
         words,
+        times: &[],
+    }
+}
+
+/// A command that succeeds, with keys of times that depend on the run.
+const fn timed(
+    document: &'static str,
+    words: &'static str,
+    times: &'static [&'static str],
+) -> Command {
+    Command {
+        document,
+        status: 0,
+        words,
+        times,
     }
 }
 
@@ -35,6 +50,7 @@ const fn failed(document: &'static str, words: &'static str) -> Command {
         document,
         status: 1,
         words,
+        times: &[],
     }
 }
 
@@ -44,6 +60,7 @@ const fn bad_input(document: &'static str, words: &'static str) -> Command {
         document,
         status: 2,
         words,
+        times: &[],
     }
 }
 
@@ -196,7 +213,8 @@ pub(super) const SESSIONS: &[Session] = &[
         done("submit", "sweep submit slurm small --shards 2"),
     ]),
     with("../experiment/tests/straight", "live", &[
-        done("go", "robot go --to 0.02,0.05 --within 10mm,1deg --tank 1.2x1.2 --gaits . --port twin --track twin"),
+        // A keep-alive more or less, .35 ms each, as the machine is busy.
+        timed("go", "robot go --to 0.02,0.05 --within 10mm,1deg --tank 1.2x1.2 --gaits . --port twin --track twin", &["duration_s"]),
     ]),
     bare("robot", &[
         done("info", "robot info --port twin"),
