@@ -1,10 +1,9 @@
 //! The values on the command line that several commands share.
 
-use std::path::Path;
 use std::str::FromStr;
 use std::time::Duration;
 
-use operations::{Context, Error, SwimmerSource, warn_if_outdated};
+use operations::{Context, Error, SwimmerSource};
 use swimmer_files::{AnyGait, GaitSpec, SwimmerFile, parse_angle, parse_rate};
 use swimmer_model::Model;
 
@@ -141,11 +140,6 @@ pub(crate) fn load_robots_swimmer(preset_or_path: &str) -> Outcome<SwimmerFile> 
     let file = load_swimmer(preset_or_path)?;
     file.swimmer.common_drag()?;
     Ok(file)
-}
-
-/// Prints a note if a swimmer file was fitted from data that changed since.
-pub(crate) fn say_if_stale(path: &Path) -> Outcome {
-    printing(|context| warn_if_outdated(path, context))
 }
 
 /// Loads the gait that `--gait` names.

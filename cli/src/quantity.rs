@@ -2,17 +2,8 @@
 
 use std::fmt;
 
-pub(crate) use operations::text::{degrees as angle, small};
+pub(crate) use operations::text::{degrees as angle, length, small};
 use swimmer_model::CrossingShare;
-
-/// A length in metres, printed in millimetres below one metre.
-pub(crate) fn length(metres: f64) -> String {
-    if metres.abs() < 1.0 {
-        format!("{:.3} mm", metres * 1e3)
-    } else {
-        format!("{metres:.6} m")
-    }
-}
 
 /// Radians without the digits that a conversion from degrees leaves behind: 1.1397, not 1.1397000015522971.
 pub(crate) fn radians(value: f64) -> String {

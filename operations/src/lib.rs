@@ -17,6 +17,7 @@
 
 pub mod best_waveform;
 pub mod bounds;
+pub mod calibrate;
 pub mod certify;
 mod context;
 mod error;

@@ -16,3 +16,12 @@ pub fn small(value: f64) -> String {
         format!("{value:.1e}")
     }
 }
+
+/// A length in metres, printed in millimetres below one metre.
+pub fn length(metres: f64) -> String {
+    if metres.abs() < 1.0 {
+        format!("{:.3} mm", metres * 1e3)
+    } else {
+        format!("{metres:.6} m")
+    }
+}

@@ -1,31 +1,25 @@
 //! `swimmer calibrate`: tracks → poses → cycles → fitted sphere radius and χ.
 
-mod assessment;
-mod beyond_fit;
+pub(crate) mod assessment;
+pub(crate) mod beyond_fit;
 mod folder;
-mod joints;
-mod output;
-mod wrong_gait;
+pub(crate) mod joints;
+mod text;
 
 use std::path::{Path, PathBuf};
 
-use calibrate::{
-    CalibrateError, CampaignData, CampaignFit, EvidenceOptions, FitError, FitOptions, RunResult,
-    TrackOptions, UsedPoints, assess, c_t_form, calibrate_campaign, calibrate_run, load_run,
-    usual_reflectors, weigh_evidence,
-};
-use swimmer_files::{Campaign, GaitSpec, PointName, Reflector, Reflectors, RigidBody, SwimmerFile};
+use calibrate::{CalibrateError, EvidenceOptions};
+use operations::Context;
+use operations::calibrate::{Fitted, LEVEL, MiddleLink, RunsOutput, single};
+use swimmer_files::{GaitSpec, PointName};
 
-pub(crate) use self::assessment::AssessmentOutput;
+use self::beyond_fit::BeyondFit;
 pub(crate) use self::beyond_fit::ResultTable;
-use self::beyond_fit::{BeyondFit, BeyondFitOutput};
-pub(crate) use self::joints::JointsOutput;
-use self::output::RunsOutput;
-pub(crate) use self::output::{FitOutput, RunOutput};
-use crate::arguments::{gait, load_robots_swimmer, say_if_stale, seconds};
+use self::text::{FitText, RunsText};
+use crate::arguments::{gait, load_robots_swimmer, seconds};
 use crate::failure::{Failure, Outcome};
 use crate::new_folder::NewFolder;
-use crate::output::Output;
+use crate::output::{Output, asides};
 use crate::progress::Stages;
 use crate::recording::Recording;
 
@@ -59,7 +53,7 @@ pub(crate) struct Calibrate {
     #[arg(long, value_name = "NAME", conflicts_with_all = ["front", "back"])]
     body: Option<String>,
     /// Level of the intervals
-    #[arg(long, value_name = "SHARE", default_value_t = 0.95, value_parser = level)]
+    #[arg(long, value_name = "SHARE", default_value_t = LEVEL, value_parser = level)]
     level: f64,
     #[command(flatten)]
     beyond: BeyondFit,
@@ -71,7 +65,7 @@ pub(crate) struct Calibrate {
 }
 
 impl Calibrate {
-    /// Calibrates and answers.
+    /// Calibrates and prints the output.
     pub(crate) fn run(self, output: Output) -> Outcome {
         let is_campaign = self
             .file
@@ -91,136 +85,15 @@ const WEIGHING: f64 = 2.7;
 const ASSESSING: f64 = 6.3;
 const WRITING: f64 = 0.5;
 
-/// A campaign's fit with what is printed of it.
-pub(crate) struct FittedCampaign {
-    pub(crate) answer: FitOutput,
-    pub(crate) found: CampaignFit,
-    pub(crate) campaign: Campaign,
-}
-
-/// One run's cycles with what is printed of them.
-pub(crate) struct RunCycles {
-    pub(crate) answer: RunOutput,
-    pub(crate) found: RunResult,
-}
-
-/// Reads a campaign with all that it names, and fits.
+/// Reads a campaign with all that it names, fits it, and prints the warnings about its swimmer file.
 ///
 /// # Errors
 /// As reading and fitting.
-pub(crate) fn fit_campaign(path: &Path, level: f64) -> Outcome<FittedCampaign> {
-    let campaign = Campaign::load(path)?;
-    if let Some(swimmer) = &campaign.swimmer_path {
-        say_if_stale(swimmer)?;
-    }
-    let data = CampaignData::load(&campaign)?;
-    let found = calibrate_campaign(&campaign, &data, FitOptions { level })?;
-    let folder = path.parent().unwrap_or_else(|| Path::new(""));
-    let runs = found
-        .runs
-        .iter()
-        .map(|run| RunOutput::new(run, &campaign.runs[run.index].gait, folder))
-        .collect();
-    let fit = &found.fit;
-    let of_runs = found.runs.iter().flat_map(|run| run_warnings(run, folder));
-    let answer = FitOutput {
-        runs,
-        sphere_radius_m: fit.sphere_radius,
-        chi: fit.chi,
-        rmse: fit.rmse,
-        intervals: fit.intervals,
-        correlation: fit.correlation,
-        c_t_form: c_t_form(&fit.c_t_form),
-        likelihood: None,
-        joints: JointsOutput::of(&found),
-        assessment: None,
-        warnings: of_runs
-            .chain(wrong_gait::of_campaign(
-                &campaign,
-                &data,
-                &found.runs,
-                &found.swimmer,
-            ))
-            .chain(fit.warnings.iter().map(ToString::to_string))
-            .collect(),
-        beyond: BeyondFitOutput::default(),
-    };
-    Ok(FittedCampaign {
-        answer,
-        found,
-        campaign,
-    })
-}
-
-/// Names of the middle link's points or body in the file of a single run.
-#[derive(Debug, Default)]
-pub(crate) struct MiddleLink {
-    pub(crate) front: Option<PointName>,
-    pub(crate) back: Option<PointName>,
-    pub(crate) body: Option<String>,
-}
-
-impl MiddleLink {
-    /// Reflectors at the ends of a link of this length \[m\], or its rigid body; `None` if nothing is named.
-    fn reflectors(&self, length: f64) -> Option<Reflectors> {
-        if self.front.is_none() && self.back.is_none() && self.body.is_none() {
-            return None;
-        }
-        // Whoever names one end does not mean the other one by its usual name.
-        let end = |name: &Option<PointName>, along: f64| Reflector {
-            point: name.clone().unwrap_or(PointName::Auto),
-            at: [along, 0.0],
-        };
-        Some(Reflectors {
-            front: end(&self.front, length / 2.0),
-            back: end(&self.back, -length / 2.0),
-            body: self.body.clone().map(RigidBody::named),
-            sides: None,
-        })
-    }
-}
-
-/// Reads one track and finds its cycles.
-///
-/// # Errors
-/// As reading and finding them.
-pub(crate) fn single_run(
-    track: &Path,
-    gait: &GaitSpec,
-    period_s: f64,
-    swimmer: &SwimmerFile,
-    options: &TrackOptions,
-    link: &MiddleLink,
-) -> Outcome<RunCycles> {
-    let mut options = options.clone();
-    for end in [&link.front, &link.back].into_iter().flatten() {
-        if let PointName::Columns(x, y) = end {
-            options.pairs.push([x.clone(), y.clone()]);
-        }
-    }
-    let length = swimmer.swimmer.links.middle;
-    options.used = Some(link.reflectors(length).map_or_else(
-        || UsedPoints::usual(length),
-        |reflectors| UsedPoints::of(&reflectors),
-    ));
-    let data = load_run(track, gait, period_s, &options)?;
-    let reflectors = link
-        .reflectors(length)
-        .unwrap_or_else(|| usual_reflectors(&data.track, &swimmer.swimmer));
-    let found = calibrate_run(&data, &reflectors, swimmer)?;
-    Ok(RunCycles {
-        answer: RunOutput::new(&found, gait, Path::new("")),
-        found,
-    })
-}
-
-/// Warnings of reader, poses and cycles of a run, with its file's name.
-fn run_warnings(run: &RunResult, folder: &Path) -> Vec<String> {
-    let file = run.file.strip_prefix(folder).unwrap_or(&run.file).display();
-    run.warnings
-        .iter()
-        .map(|warning| format!("{file}: {warning}"))
-        .collect()
+pub(crate) fn fit_campaign(path: &Path, level: f64) -> Outcome<Fitted> {
+    let mut context = Context::on_disk();
+    let fitted = Fitted::load(path, level, &mut context);
+    asides(&context);
+    Ok(fitted?)
 }
 
 impl Calibrate {
@@ -251,41 +124,25 @@ impl Calibrate {
         ]);
         stages.next("reading the tracks, fitting r_s and χ", FITTING);
         let mut fitted = fit_campaign(&self.file, self.level)?;
-        fitted.answer.beyond = self
-            .beyond
-            .compute(&fitted.campaign, &fitted.found, &mut stages)?;
+        self.beyond.compute(&mut fitted, &mut stages)?;
         let options = EvidenceOptions::default();
         stages.next("weighing the evidence", WEIGHING);
-        let evidence = weigh_evidence(&fitted.found, options);
-        match &evidence {
-            Ok(evidence) => fitted.answer.likelihood = Some(evidence.likelihood.clone()),
-            Err(cause) => fitted
-                .answer
-                .warnings
-                .push(format!("no estimate by likelihood: {cause}")),
-        }
+        let weighed = fitted.weigh_evidence(options).map(|_| ());
         stages.next("assessing the fit", ASSESSING);
-        let assessed = assess(&fitted.found, evidence.as_ref().ok())?;
         let of_folder = self.file.parent().unwrap_or_else(|| Path::new(""));
-        let document = assessed.document(&fitted.found, |file| {
+        let assessed = fitted.assess(|file| {
             let path = file.strip_prefix(of_folder).unwrap_or(file);
             path.display().to_string()
-        });
-        fitted.answer.assessment = Some(AssessmentOutput(document));
+        })?;
         if let Some(folder) = folder {
             stages.next("writing report and tables", WRITING);
-            let weighed = (&evidence?, options);
-            folder::write(
-                &fitted,
-                assessed.systematics.as_ref(),
-                weighed,
-                &self.file,
-                &folder,
-            )?;
+            weighed?;
+            let systematics = assessed.systematics.as_ref();
+            folder::write(&fitted, systematics, options, &self.file, &folder)?;
             folder.publish()?;
         }
         drop(stages);
-        output.print(&fitted.answer);
+        output.rendered(&fitted.output, &FitText(&fitted.output));
         Ok(())
     }
 
@@ -308,43 +165,25 @@ impl Calibrate {
             )));
         }
         let swimmer = load_robots_swimmer(swimmer)?;
-        let run = single_run(
-            &self.file,
-            gait,
-            period_s,
-            &swimmer,
-            &self.recording.options(),
-            &MiddleLink {
-                front: self.front.clone(),
-                back: self.back.clone(),
-                body: self.body.clone(),
-            },
-        )?;
-        let mut warnings = run_warnings(&run.found, Path::new(""));
-        let file = self.file.display();
-        let doubts = wrong_gait::of_single(&run.found, gait, period_s, &swimmer);
-        warnings.extend(doubts.into_iter().map(|doubt| format!("{file}: {doubt}")));
-        output.print(&RunsOutput {
-            runs: vec![run.answer],
-            warnings,
-        });
+        let link = MiddleLink {
+            front: self.front,
+            back: self.back,
+            body: self.body,
+        };
+        let options = self.recording.options();
+        let run = single(&self.file, gait, period_s, &swimmer, &options, &link)?;
+        let runs = RunsOutput {
+            runs: vec![run.output],
+            warnings: run.warnings,
+        };
+        output.rendered(&runs, &RunsText(&runs));
         Ok(())
-    }
-}
-
-impl From<FitError> for Failure {
-    fn from(error: FitError) -> Self {
-        CalibrateError::from(error).into()
     }
 }
 
 impl From<CalibrateError> for Failure {
     fn from(error: CalibrateError) -> Self {
-        if error.is_bad_input() {
-            Self::bad_input(&error)
-        } else {
-            Self::tried(&error)
-        }
+        operations::Error::from(error).into()
     }
 }
 

@@ -13,6 +13,7 @@ use calibrate::{PredictedCycle, TrackOptions, predict};
 use gait_optimizer::{Bounds, DisplacementProblem, OptimalGait, displacement};
 use host_link::LinkError;
 use link_protocol::Refusal;
+use operations::calibrate::{Fitted, MiddleLink, Run, single};
 use swimmer_files::{
     AnyGait, Campaign, GaitSpec, Provenance, ServoFile, SwimmerFile, write_atomically,
 };
@@ -21,7 +22,7 @@ use swimmer_model::Swimmer;
 use self::laboratory::Laboratory;
 use self::output::DemoOutput;
 use self::race::Race;
-use super::calibrate::{FittedCampaign, MiddleLink, RunCycles, fit_campaign, single_run};
+use super::calibrate::fit_campaign;
 use super::lab;
 use super::robot::table_of;
 use crate::arguments::load_robots_swimmer;
@@ -143,14 +144,14 @@ struct Finished {
     start: SwimmerFile,
     fitted: SwimmerFile,
     seed: u64,
-    fit: FittedCampaign,
+    fit: Fitted,
     best: OptimalGait,
     best_gait: AnyGait,
     /// The bound under which the robot accepted the gait, and the one that its servos would allow, rad.
     bounds: (f64, f64),
     period_s: f64,
     predicted: PredictedCycle,
-    swum: RunCycles,
+    swum: Run,
     race: Race,
 }
 
@@ -195,7 +196,7 @@ impl<'a> Round<'a> {
         let fit = fit_campaign(&self.draft.join(CAMPAIGN), 0.95)?;
         let fitted = SwimmerFile {
             name: format!("{}, fitted", self.truth.name),
-            ..fit.found.swimmer.clone()
+            ..fit.result.swimmer.clone()
         };
         let inputs = Campaign::files(&self.draft.join(CAMPAIGN))?;
         let made_by = concat!("swimmer demo ", env!("CARGO_PKG_VERSION"));
@@ -212,7 +213,7 @@ impl<'a> Round<'a> {
         self.doing("comparing");
         let predicted =
             predict(&fitted, &best_gait, period_s).map_err(|error| Failure::tried(&error))?;
-        let swum = single_run(
+        let swum = single(
             &track,
             &GaitSpec::File {
                 path: self.draft.join(BEST),

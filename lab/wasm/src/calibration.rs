@@ -5,12 +5,11 @@
 mod data;
 mod outputs;
 
-use calibrate::{
-    Assessment, CampaignFit, Evidence, EvidenceOptions, FitOptions, NuisanceParameter,
-    TrackOptions, advise, assess, calibrate_campaign, fit_nuisance, survey_tracks, weigh_evidence,
-};
+use std::path::Path;
+
+use calibrate::{EvidenceOptions, NuisanceParameter, TrackOptions, survey_tracks};
+use operations::calibrate::{Fitted, LEVEL};
 use serde::Deserialize;
-use swimmer_files::Campaign;
 
 use crate::calls::{Call, Lab, Outcome, json, parsed};
 use data::Dropped;
@@ -26,13 +25,6 @@ pub(crate) const CALLS: &[(&str, Call)] = &[
     ("calibrate advice", advice),
     ("calibrate close", close),
 ];
-
-/// Fit with the results of its later steps.
-struct Fitted {
-    campaign: Campaign,
-    found: CampaignFit,
-    evidence: Option<Evidence>,
-}
 
 #[derive(Deserialize)]
 struct Numbered {
@@ -53,36 +45,27 @@ fn fit(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let dropped = Dropped::read(bytes)?;
     let campaign = dropped.campaign()?;
     let data = dropped.data(&campaign)?;
-    let found = calibrate_campaign(&campaign, &data, FitOptions::default())
-        .map_err(|why| why.to_string())?;
-    let output = FitOutput::new(&found, &campaign, &data);
-    let number = lab.kept.keep(Fitted {
-        campaign,
-        found,
-        evidence: None,
-    });
-    json(&output.numbered(number))
+    let fitted = Fitted::new(campaign, &data, LEVEL, Path::new(""))?;
+    let number = lab.kept.keep(fitted);
+    json(&FitOutput::new(lab.kept.get(number)?, number))
 }
 
 /// Likelihood, profiles, ridge and curves of a fit.
 fn evidence(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let Numbered { number } = parsed(bytes)?;
     let fitted: &mut Fitted = lab.kept.get(number)?;
-    let weighed =
-        weigh_evidence(&fitted.found, EvidenceOptions::default()).map_err(|why| why.to_string())?;
-    let runs = fitted.found.runs.iter();
-    let names: Vec<String> = runs.map(|run| run.file.display().to_string()).collect();
-    let weighed = fitted.evidence.insert(weighed);
-    json(&EvidenceOutput::new(weighed, &names))
+    let runs = fitted.output.runs.iter();
+    let names: Vec<String> = runs.map(|run| run.file.clone()).collect();
+    let evidence = fitted.weigh_evidence(EvidenceOptions::default())?;
+    json(&EvidenceOutput::new(evidence, &names))
 }
 
 /// Assessment of a fit.
 fn assessment(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let Numbered { number } = parsed(bytes)?;
     let fitted: &mut Fitted = lab.kept.get(number)?;
-    let assessed: Assessment =
-        assess(&fitted.found, fitted.evidence.as_ref()).map_err(|why| why.to_string())?;
-    json(&assessed.document(&fitted.found, |file| file.display().to_string()))
+    fitted.assess(|file| file.display().to_string())?;
+    json(&fitted.output.assessment)
 }
 
 /// Number of a fit, and the words of `--fit-also`.
@@ -101,15 +84,14 @@ fn further(lab: &mut Lab, bytes: &[u8]) -> Outcome {
             .ok_or_else(|| format!("fitting `{word}` also: there is no such word"))
     };
     let wanted = also.iter().map(of_word).collect::<Result<Vec<_>, _>>()?;
-    let fit = fit_nuisance(&fitted.found, &wanted).map_err(|why| why.to_string())?;
-    json(&NuisanceOutput::new(&fit))
+    json(&NuisanceOutput::new(fitted.fit_also(&wanted)?))
 }
 
 /// Advice on the next measurement.
 fn advice(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let Numbered { number } = parsed(bytes)?;
     let fitted: &mut Fitted = lab.kept.get(number)?;
-    json(&advise(&fitted.campaign, &fitted.found).map_err(|why| why.to_string())?)
+    json(fitted.advise()?)
 }
 
 /// Releases a fit.

@@ -2,10 +2,9 @@
 
 use std::fmt;
 
-use calibrate::{Advice, CampaignFit, NuisanceFit, NuisanceParameter, advise, fit_nuisance};
+use calibrate::{Advice, NuisanceFit, NuisanceParameter};
 use clap::builder::{PossibleValuesParser, TypedValueParser as _};
-use serde::Serialize;
-use swimmer_files::Campaign;
+use operations::calibrate::{Fitted, Output};
 
 use crate::failure::Outcome;
 use crate::progress::Stages;
@@ -55,32 +54,17 @@ impl BeyondFit {
     }
 
     /// Computes the requested options.
-    pub(super) fn compute(
-        &self,
-        campaign: &Campaign,
-        found: &CampaignFit,
-        stages: &mut Stages,
-    ) -> Outcome<BeyondFitOutput> {
-        let mut output = BeyondFitOutput::default();
+    pub(super) fn compute(&self, fitted: &mut Fitted, stages: &mut Stages) -> Outcome {
         if !self.fit_also.is_empty() {
             stages.next("fitting more parameters", FITTING);
-            output.further = Some(fit_nuisance(found, &self.fit_also)?);
+            fitted.fit_also(&self.fit_also)?;
         }
         if self.advise {
             stages.next("weighing what to measure next", ADVISING);
-            output.advice = Some(advise(campaign, found)?);
+            fitted.advise()?;
         }
-        Ok(output)
+        Ok(())
     }
-}
-
-/// Output of the optional computations.
-#[derive(Debug, Clone, Default, Serialize)]
-pub(crate) struct BeyondFitOutput {
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) further: Option<NuisanceFit>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    advice: Option<Advice>,
 }
 
 /// One result as a table with notes, for the terminal and the report.
@@ -90,12 +74,11 @@ pub(crate) struct ResultTable {
     pub(crate) notes: Vec<String>,
 }
 
-impl BeyondFitOutput {
-    pub(crate) fn shown(&self) -> Vec<ResultTable> {
-        let further = self.further.as_ref().map(of_fit);
-        let advice = self.advice.as_ref().map(of_advice);
-        further.into_iter().chain(advice).collect()
-    }
+/// Tables of the optional computations.
+pub(crate) fn tables(output: &Output) -> impl Iterator<Item = ResultTable> {
+    let further = output.further.as_ref().map(of_fit);
+    let advice = output.advice.as_ref().map(of_advice);
+    further.into_iter().chain(advice)
 }
 
 impl fmt::Display for ResultTable {

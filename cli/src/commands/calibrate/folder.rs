@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
+use calibrate::EvidenceOptions;
 use calibrate::assessment::Systematics;
-use calibrate::{Evidence, EvidenceOptions};
+use operations::calibrate::Fitted;
 use swimmer_files::{Campaign, Provenance, write_atomically};
 
-use super::FittedCampaign;
-use crate::failure::Outcome;
+use crate::failure::{Failure, Outcome};
 use crate::new_folder::NewFolder;
 use crate::output::document;
 use crate::report::calibration::{Calibration, page, tables};
@@ -23,23 +23,28 @@ const REPORT: &str = "report.html";
 /// # Errors
 /// Errors of hashing the inputs and of writing.
 pub(super) fn write(
-    fitted: &FittedCampaign,
+    fitted: &Fitted,
     systematics: Option<&Systematics>,
-    (evidence, options): (&Evidence, EvidenceOptions),
+    options: EvidenceOptions,
     file: &Path,
     folder: &NewFolder,
 ) -> Outcome {
     let (draft, place) = (folder.draft(), folder.place());
-    let FittedCampaign {
-        answer,
-        found,
+    let Fitted {
         campaign,
-        ..
-    } = fitted;
+        result: found,
+        output,
+        evidence: Some(evidence),
+    } = fitted
+    else {
+        return Err(Failure::Tried(
+            "the report needs likelihood and profiles, which were not computed".to_owned(),
+        ));
+    };
     let made_by = concat!("swimmer calibrate ", env!("CARGO_PKG_VERSION"));
     let provenance = Provenance::of_files(made_by, &Campaign::files(file)?, place)?;
     let save = |name: &str, text: &str| write_atomically(&draft.join(name), text.as_bytes());
-    let recommended = answer.assessment.as_ref().map_or_else(
+    let recommended = output.assessment.as_ref().map_or_else(
         || found.swimmer.clone(),
         |assessment| {
             let headline = &assessment.headline;
@@ -49,8 +54,8 @@ pub(super) fn write(
         },
     );
     provenance.save_with(&recommended, &draft.join(FITTED))?;
-    save(FIT, &document(answer))?;
-    let names: Vec<String> = answer.runs.iter().map(|run| run.file.clone()).collect();
+    save(FIT, &document(output))?;
+    let names: Vec<String> = output.runs.iter().map(|run| run.file.clone()).collect();
     save(EVIDENCE, &document(&evidence.document(&names)))?;
     let mut files = vec![
         (
@@ -66,7 +71,7 @@ pub(super) fn write(
             "likelihood, profiles, ridge, bootstrap, fits without each run",
         ),
     ];
-    if let Some(further) = &answer.beyond.further {
+    if let Some(further) = &output.further {
         provenance.save_with(&further.swimmer, &draft.join(FITTED_FURTHER))?;
         files.insert(
             1,
@@ -81,7 +86,7 @@ pub(super) fn write(
         campaign,
         found,
         evidence,
-        answer,
+        output,
         systematics,
         options,
         provenance: &provenance,

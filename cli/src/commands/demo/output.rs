@@ -3,11 +3,11 @@
 use std::fmt;
 use std::path::Path;
 
+use operations::calibrate;
 use serde::Serialize;
 
 use super::race::Race;
 use super::{BEST, CYCLES, Finished, REPORT};
-use crate::commands::calibrate::FitOutput;
 use crate::quantity::{self, Table};
 
 /// Results of the round, and their files.
@@ -19,7 +19,7 @@ pub(super) struct DemoOutput {
     displacement_tracked_m: f64,
     /// The fastest and the farthest gait, both at the servos' full rate.
     race: Race,
-    fit: FitOutput,
+    fit: calibrate::Output,
     report: String,
     /// True parameters, for comparison with fit and prediction.
     truth: Truth,
@@ -41,15 +41,15 @@ impl DemoOutput {
             gait: place.join(BEST).display().to_string(),
             played_cycles: CYCLES,
             displacement_predicted_m: round.predicted.x_m,
-            displacement_tracked_m: round.swum.answer.x_m,
+            displacement_tracked_m: round.swum.output.x_m,
             race: round.race.clone(),
-            fit: round.fit.answer.clone(),
+            fit: round.fit.output.clone(),
             report: place.join(REPORT).display().to_string(),
             truth: Truth {
                 sphere_radius_m: round.truth.swimmer.sphere_radius,
                 chi: round.truth.swimmer.chi,
             },
-            tracked_sd_m: round.swum.answer.x_sd_m,
+            tracked_sd_m: round.swum.output.x_sd_m,
             title: format!(
                 "Once round the loop with `{}`, seed {}",
                 round.truth.name, round.seed

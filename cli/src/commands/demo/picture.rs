@@ -1,12 +1,12 @@
 //! Figures of the report from the results of a round.
 
 use calibrate::{CycleError, RunResult, joint_path, predict};
+use operations::calibrate::RunOutput;
 use swimmer_files::{AnyGait, GaitSpec, SwimmerFile};
 use swimmer_model::{Gait as _, Pose};
 use twin::Tank;
 
 use super::{BEST, BEST_TRACK, CAMPAIGN, FITTED, Finished, LAB, LINK_LOG, START};
-use crate::commands::calibrate::RunOutput;
 use crate::failure::{Failure, Outcome};
 use crate::report::swimming::{Moment, Swimming};
 use crate::report::{GaitPicture, MeasuredCircle, ModelCircle, Parameter, Report, Track};
@@ -30,8 +30,8 @@ const START_WINDOW_S: f64 = 0.5;
 /// # Errors
 /// [`Failure::Tried`] when a model cannot swim what it is shown with.
 pub(super) fn report(round: &Finished, lab: Option<String>) -> Outcome<Report> {
-    let [radius, chi] = [round.fit.answer.sphere_radius_m, round.fit.answer.chi];
-    let intervals = &round.fit.answer.intervals;
+    let [radius, chi] = [round.fit.output.sphere_radius_m, round.fit.output.chi];
+    let intervals = &round.fit.output.intervals;
     let parameters = vec![
         Parameter {
             name: "r_s".into(),
@@ -51,15 +51,15 @@ pub(super) fn report(round: &Finished, lab: Option<String>) -> Outcome<Report> {
         },
     ];
     let (shown, shown_gait) = shown_run(round)?;
-    let swum = track("tracked".into(), &round.swum.found)?;
+    let swum = track("tracked".into(), &round.swum.result)?;
     Ok(Report {
         swimmer: round.truth.name.clone(),
         seed: round.seed,
         period_s: round.period_s,
         parameters,
         level: intervals.level,
-        rmse: round.fit.answer.rmse,
-        c_t_form: round.fit.answer.c_t_form.clone(),
+        rmse: round.fit.output.rmse,
+        c_t_form: round.fit.output.c_t_form.clone(),
         circles: measured(round),
         fitted_curve: curve(round, &round.fitted)?,
         start_curve: curve(round, &round.start)?,
@@ -73,7 +73,7 @@ pub(super) fn report(round: &Finished, lab: Option<String>) -> Outcome<Report> {
             round.race.fastest.speed_tracked_m_per_s,
             round.race.times_as_fast,
         ),
-        displacement_tracked_m: (round.swum.answer.x_m, round.swum.answer.x_sd_m),
+        displacement_tracked_m: (round.swum.output.x_m, round.swum.output.x_sd_m),
         bounds: round.bounds,
         files: files(lab.is_some()),
         lab,
@@ -93,7 +93,7 @@ fn measured(round: &Finished) -> Vec<MeasuredCircle> {
     };
     let gaits = round.fit.campaign.runs.iter().map(|run| &run.gait);
     gaits
-        .zip(&round.fit.answer.runs)
+        .zip(&round.fit.output.runs)
         .filter_map(circle)
         .collect()
 }
@@ -127,7 +127,7 @@ fn shown_run(round: &Finished) -> Outcome<(&RunResult, &GaitSpec)> {
     let gaits = round.fit.campaign.runs.iter().map(|run| &run.gait);
     round
         .fit
-        .found
+        .result
         .runs
         .iter()
         .zip(gaits)
@@ -187,7 +187,7 @@ fn predicted(round: &Finished) -> Outcome<Track> {
     }
     let origin = tank.pose().inverse();
     let mut poses = Vec::new();
-    for cycle in 0..round.swum.answer.cycles.unwrap_or(0) {
+    for cycle in 0..round.swum.output.cycles.unwrap_or(0) {
         for (u, angles) in &path {
             tank.move_joints(place(angles));
             let pose = origin * tank.pose();
@@ -209,7 +209,7 @@ fn swimming(round: &Finished, swum: &Track) -> Outcome<Swimming> {
         round.period_s,
     )
     .map_err(|error| Failure::tried(&error))?;
-    let cycles = round.swum.answer.cycles.unwrap_or(0).max(1);
+    let cycles = round.swum.output.cycles.unwrap_or(0).max(1);
     let moment = |place: usize| {
         let cycle_u = place as f64 / MOMENTS as f64;
         let u = cycle_u - cycle_u.floor();

@@ -5,12 +5,12 @@ use std::time::Duration;
 use calibrate::{TrackOptions, predict};
 use forecast::shortest_of_table;
 use gait_optimizer::SpeedProblem;
+use operations::calibrate::{MiddleLink, single};
 use serde::Serialize;
 use swimmer_files::{AnyGait, Bounds, GaitFile, GaitSpec, SwimmerFile};
 
 use super::{CYCLES, Round};
 use crate::arguments::model;
-use crate::commands::calibrate::{MiddleLink, single_run};
 use crate::failure::{Failure, Outcome};
 use crate::threads;
 use operations::bounds::playable;
@@ -77,7 +77,7 @@ impl Round<'_> {
             path: place,
             reversed: false,
         };
-        let swum = single_run(
+        let swum = single(
             &track,
             &spec,
             period_s,
@@ -91,7 +91,7 @@ impl Round<'_> {
             period_s,
             speed_designed_m_per_s: designed.displacement.norm() / timing.period,
             speed_predicted_m_per_s: speed(predicted.x_m, predicted.y_m),
-            speed_tracked_m_per_s: speed(swum.answer.x_m, swum.answer.y_m),
+            speed_tracked_m_per_s: speed(swum.output.x_m, swum.output.y_m),
         })
     }
 }

@@ -7,19 +7,19 @@ mod tables;
 use calibrate::assessment::Systematics;
 use calibrate::evidence::{CurvePoint, Evidence};
 use calibrate::{CampaignFit, EvidenceOptions};
+use operations::calibrate::Output;
 use swimmer_files::{Campaign, GaitSpec, Provenance, SwimmerFile};
 
 pub(crate) use self::page::page;
 pub(crate) use self::tables::tables;
 use super::{MeasuredCircle, ModelCircle};
-use crate::commands::calibrate::FitOutput;
 
 /// Everything that the report shows.
 pub(crate) struct Calibration<'a> {
     pub(crate) campaign: &'a Campaign,
     pub(crate) found: &'a CampaignFit,
     pub(crate) evidence: &'a Evidence,
-    pub(crate) answer: &'a FitOutput,
+    pub(crate) output: &'a Output,
     /// The estimate with systematics, if there is one.
     pub(crate) systematics: Option<&'a Systematics>,
     pub(crate) options: EvidenceOptions,

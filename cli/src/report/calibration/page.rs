@@ -3,10 +3,11 @@
 use askama::Template;
 use calibrate::evidence::Pair;
 use calibrate::{CampaignFit, Intervals, RunResult};
+use operations::calibrate::RunOutput;
 
 use super::figures::{self, Coordinate};
 use super::{Calibration, model_circles};
-use crate::commands::calibrate::{AssessmentOutput, JointsOutput, ResultTable, RunOutput};
+use crate::commands::calibrate::{ResultTable, assessment, beyond_fit, joints};
 use crate::failure::Outcome;
 use crate::quantity;
 use crate::report::figures as circles;
@@ -85,7 +86,7 @@ pub(crate) fn page(calibration: &Calibration<'_>) -> Outcome<String> {
     })
 }
 
-/// The answer four ways.
+/// The estimates of all methods.
 fn ways(calibration: &Calibration<'_>) -> Vec<Way> {
     let (fit, evidence) = (&calibration.found.fit, calibration.evidence);
     let likelihood = &evidence.likelihood;
@@ -93,7 +94,7 @@ fn ways(calibration: &Calibration<'_>) -> Vec<Way> {
         sphere_radius: fit.sphere_radius,
         chi: fit.chi,
     };
-    let assessment = calibration.answer.assessment.as_ref();
+    let assessment = calibration.output.assessment.as_ref();
     let by_paper = assessment.is_none_or(|assessment| assessment.headline.by == "paper");
     let way = |name, estimate: Option<Pair>, intervals: &Intervals, is_recommended| {
         let value = estimate.unwrap_or(paper);
@@ -189,26 +190,26 @@ impl Page<'_> {
     }
 
     fn runs(&self) -> impl Iterator<Item = (&RunOutput, &RunResult)> {
-        self.of.answer.runs.iter().zip(&self.found.runs)
+        self.of.output.runs.iter().zip(&self.found.runs)
     }
 
     fn has_remarks(&self) -> bool {
-        let answer = self.of.answer;
-        let mut excluded = answer.assessment.iter().flat_map(|of| &of.excluded);
-        answer.runs.iter().any(|run| !run.diagnoses.is_empty()) || excluded.next().is_some()
+        let output = self.of.output;
+        let mut excluded = output.assessment.iter().flat_map(|of| &of.excluded);
+        output.runs.iter().any(|run| !run.diagnoses.is_empty()) || excluded.next().is_some()
     }
 
     fn warnings(&self) -> Vec<String> {
         let outliers = self.of.evidence.outliers.iter().map(|outlier| {
             format!(
                 "{}: {} stands out by {} standard errors and is left out of the likelihood, not of the paper’s fit",
-                self.of.answer.runs.get(outlier.run).map_or("", |run| &run.file),
+                self.of.output.runs.get(outlier.run).map_or("", |run| &run.file),
                 outlier.quantity,
                 markup::minus(&format!("{:.1}", outlier.standard_errors))
             )
         });
         self.of
-            .answer
+            .output
             .warnings
             .iter()
             .cloned()
@@ -218,11 +219,16 @@ impl Page<'_> {
 
     /// Budget, explanations and the runs' numbers: the tables that the command prints.
     fn assessed(&self) -> Vec<ResultTable> {
-        let joints = self.of.answer.joints.iter().map(JointsOutput::shown);
-        let assessment = self.of.answer.assessment.iter();
+        let joints = self.of.output.joints.iter().map(joints::table);
+        let assessment = self.of.output.assessment.iter();
         joints
-            .chain(assessment.flat_map(AssessmentOutput::shown))
+            .chain(assessment.flat_map(assessment::tables))
             .collect()
+    }
+
+    /// Tables of the optional computations.
+    fn beyond_fit(&self) -> Vec<ResultTable> {
+        beyond_fit::tables(self.of.output).collect()
     }
 }
 
@@ -242,7 +248,7 @@ fn over_amplitude(calibration: &Calibration<'_>) -> Outcome<Option<[String; 3]>>
 
 /// Numbers of the runs, as in their table: names of files would cover each other.
 fn numbers(calibration: &Calibration<'_>) -> Vec<String> {
-    let count = calibration.answer.runs.len();
+    let count = calibration.output.runs.len();
     (1..=count).map(|number| number.to_string()).collect()
 }
 
@@ -257,13 +263,13 @@ fn drawn_runs(calibration: &Calibration<'_>) -> Outcome<Vec<DrawnRun>> {
             yaw: figures::cycles(run, Coordinate::Theta)?,
         })
     };
-    let answers = calibration.answer.runs.iter();
-    let fitted = answers
+    let described = calibration.output.runs.iter();
+    let fitted = described
         .zip(&calibration.found.runs)
         .enumerate()
         .filter(|(_, (_, run))| !run.is_reported())
-        .map(|(index, (answer, run))| {
-            let title = format!("{} · {} · {}", index + 1, answer.file, answer.gait);
+        .map(|(index, (output, run))| {
+            let title = format!("{} · {} · {}", index + 1, output.file, output.gait);
             drawn("run", title, run)
         });
     let excluded = calibration.found.excluded.iter().filter_map(|excluded| {

@@ -2,7 +2,7 @@
 
 import { signal } from "@preact/signals";
 import { Lab, Latest } from "../wasm/lab.ts";
-import type { AdviceOutput, AssessmentOutput, EvidenceOutput, FitOutput, NuisanceOutput, Holdings } from "./outputs.ts";
+import { type AdviceOutput, type AssessmentOutput, type EvidenceOutput, type FitOutput, type FitReply, type Holdings, type NuisanceOutput, withFigures } from "./outputs.ts";
 
 const lab = new Lab("robot");
 
@@ -137,7 +137,7 @@ async function calibrate(): Promise<void> {
   if (fit.value) await lab.json("calibrate close", { number: fit.value.number });
   forget();
   begin("fitting rₛ and χ");
-  const fitted = await lab.json<FitOutput>("calibrate", packed([...dropped]));
+  const fitted = withFigures(await lab.json<FitReply>("calibrate", packed([...dropped])));
   fit.value = fitted;
   const { number } = fitted;
   begin("weighing the evidence: likelihood, bootstrap, fits without each run");

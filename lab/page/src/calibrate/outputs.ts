@@ -15,11 +15,10 @@ export interface Intervals {
   level: number;
 }
 
-export interface Run {
+/** Cycles of one run, as in the command's output. */
+export interface RunOutput {
   file: string;
   gait: string;
-  amplitude_rad: number | null;
-  clockwise: boolean;
   cycles: number | null;
   x_m: number;
   x_sd_m: number | null;
@@ -28,15 +27,21 @@ export interface Run {
   delta_theta_rad: number;
   delta_theta_sd_rad: number | null;
   period_s: number;
-  each: [number, number][];
-  left_out: { what: string; reason: string }[];
-  /** Front and back, if reflectors on the side links show them. */
-  servos: [Servo, Servo] | null;
-  path: [number, number][];
+  left_out: { start_s: number; reason: string }[];
   diagnoses: string[];
-  warnings: string[];
 }
 
+/** Data of one run for the figures. */
+export interface RunFigures {
+  amplitude_rad: number | null;
+  clockwise: boolean;
+  each: [number, number][];
+  path: [number, number][];
+}
+
+export type Run = RunOutput & RunFigures;
+
+/** Output of the command, and further data of the page. */
 export interface FitOutput {
   number: number;
   runs: Run[];
@@ -46,10 +51,19 @@ export interface FitOutput {
   intervals: Intervals;
   correlation: number;
   c_t_form: string;
-  servos: [Servo, Servo] | null;
-  excluded: { what: string; reason: string }[];
+  /** Servos, if reflectors on the side links show them. */
+  joints?: { front: Servo; back: Servo };
+  excluded: { file: string; reason: string }[];
   warnings: string[];
   swimmer: string;
+}
+
+/** Output of the module, with the data for the figures in a list of their own. */
+export type FitReply = Omit<FitOutput, "runs"> & { runs: RunOutput[]; figures: RunFigures[] };
+
+/** Adds to each run its data for the figures. */
+export function withFigures({ figures, runs, ...fit }: FitReply): FitOutput {
+  return { ...fit, runs: figures.flatMap((figure, k) => runs.slice(k, k + 1).map((run) => ({ ...run, ...figure }))) };
 }
 
 export interface CurvePoint {

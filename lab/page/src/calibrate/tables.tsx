@@ -69,7 +69,7 @@ export function Parameters({ fit, evidence, assessment }: { fit: FitOutput; evid
       {evidence?.outliers.map(({ file, quantity, standard_errors }) => (
         <p key={file + quantity} class="soft">{`${quantity} of ${short(file)} stands out by ${standard_errors.toFixed(1)} standard errors: the likelihood leaves it out`}</p>
       ))}
-      {[...fit.excluded.map(({ what, reason }) => `${what} is left out: ${reason}`), ...fit.warnings].map((line) => <p key={line} class="soft">{line}</p>)}
+      {[...fit.excluded.map(({ file, reason }) => `${file} is left out: ${reason}`), ...fit.warnings].map((line) => <p key={line} class="soft">{line}</p>)}
     </section>
   );
 }
@@ -160,14 +160,14 @@ export function Runs({ fit }: { fit: FitOutput }) {
     <Table title="Runs" id="runs" head={["run", "gait", "cycles", "X [mm]", "sd [mm]", "ΔY [mm]", "Δθ [°]", "left out"]}>
       {fit.runs.map((run) => (
         <tr key={run.file}>
-          <th scope="row">{short(run.file)}{[...run.diagnoses, ...run.warnings].map((line) => <small key={line} class="soft note">{line}</small>)}</th>
+          <th scope="row">{short(run.file)}{run.diagnoses.map((line) => <small key={line} class="soft note">{line}</small>)}</th>
           <td>{named(run)}</td>
           <td>{run.cycles ?? "–"}</td>
           <td>{millimetres(run.x_m)}</td>
           <td>{run.x_sd_m === null ? "–" : millimetres(run.x_sd_m)}</td>
           <td>{millimetres(run.delta_y_m)}</td>
           <td>{figure(degrees(run.delta_theta_rad), 2)}</td>
-          <td title={run.left_out.map(({ what, reason }) => `${what}: ${reason}`).join("\n")}>{run.left_out.length}</td>
+          <td title={run.left_out.map(({ start_s, reason }) => `${start_s.toFixed(1)} s: ${reason}`).join("\n")}>{run.left_out.length}</td>
         </tr>
       ))}
     </Table>
@@ -186,7 +186,7 @@ export function Cycles({ runs }: { runs: readonly Run[] }) {
           <td>{run.period_s.toFixed(2)}</td>
           <td class="each">
             {run.each.map(([start, x]) => <span key={start}>{(x * 1000).toFixed(2)}<small class="soft">{start.toFixed(1)}</small></span>)}
-            {run.left_out.map(({ what, reason }) => <span key={what} class="out" title={reason}>–<small class="soft">{what}</small></span>)}
+            {run.left_out.map(({ start_s, reason }) => <span key={start_s} class="out" title={reason}>–<small class="soft">{start_s.toFixed(1)} s</small></span>)}
           </td>
         </tr>
       ))}
@@ -196,14 +196,15 @@ export function Cycles({ runs }: { runs: readonly Run[] }) {
 
 /** Behaviour of the servos, measured by the reflectors on the side links: mean over the runs. */
 export function Servos({ fit }: { fit: FitOutput }) {
-  if (!fit.servos) return null;
+  if (!fit.joints) return null;
+  const { front, back } = fit.joints;
   const tell = (measured: Measured | null, unit: number, digits: number) =>
     measured === null ? "–" : `${(measured.value * unit).toFixed(digits)}${measured.error === null ? "" : ` ± ${(measured.error * unit).toFixed(digits)}`}`;
   return (
     <Table title="Servos" id="servos" head={["measured joint", "gain", "dead band [°]", "offset [°]", "lag [ms]"]}>
-      {fit.servos.map((servo, k) => (
-        <tr key={k}>
-          <th scope="row">{k === 0 ? "front" : "back"}</th>
+      {Object.entries({ front, back }).map(([name, servo]) => (
+        <tr key={name}>
+          <th scope="row">{name}</th>
           <td>{tell(servo.gain, 1, 4)}</td>
           <td>{tell(servo.dead_band_rad, degrees(1), 2)}</td>
           <td>{tell(servo.offset_rad, degrees(1), 2)}</td>

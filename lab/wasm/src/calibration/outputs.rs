@@ -1,73 +1,50 @@
-//! Outputs of the calls, with the keys of `swimmer calibrate --json` and of its evidence, and additional data for the figures.
+//! Outputs of the calls: those of `swimmer calibrate`, and additional data for the figures.
 
 use calibrate::evidence::{CurvePoint, Evidence, EvidenceDocument, Pair};
-use calibrate::{
-    CampaignData, CampaignFit, Intervals, MeasuredServo, NuisanceFit, RunResult, c_t_form,
-    other_gaits,
-};
+use calibrate::{NuisanceFit, RunResult};
+use operations::calibrate::{Fitted, Output};
 use serde::Serialize;
-use swimmer_files::{Campaign, GaitSpec};
+use swimmer_files::GaitSpec;
 
 /// Output of the fit.
 #[derive(Serialize)]
-pub(super) struct FitOutput {
+pub(super) struct FitOutput<'a> {
     /// Number by which the later steps refer to the fit.
     number: u32,
-    runs: Vec<Run>,
-    sphere_radius_m: f64,
-    chi: f64,
-    rmse: f64,
-    intervals: Intervals,
-    correlation: f64,
-    c_t_form: String,
-    /// Mean over the runs of the measured servos.
-    servos: Option<[MeasuredServo; 2]>,
+    /// Document of the command.
+    #[serde(flatten)]
+    fit: &'a Output,
+    /// Data for the figures, run by run.
+    figures: Vec<RunFigures>,
     excluded: Vec<Excluded>,
-    warnings: Vec<String>,
     /// Swimmer file of the fitted swimmer.
     swimmer: String,
 }
 
+/// Data of one run for the figures.
 #[derive(Serialize)]
-struct Run {
-    file: String,
-    gait: String,
-    /// Amplitude of a circle, with the sign of its sense.
+struct RunFigures {
+    /// Amplitude of a circle.
     amplitude_rad: Option<f64>,
     clockwise: bool,
-    cycles: Option<usize>,
-    x_m: f64,
-    x_sd_m: f64,
-    y_m: f64,
-    delta_y_m: f64,
-    delta_y_sd_m: f64,
-    delta_theta_rad: f64,
-    delta_theta_sd_rad: f64,
-    period_s: f64,
     /// Start \[s\] and displacement \[m\] of each valid cycle.
     each: Vec<[f64; 2]>,
-    left_out: Vec<Excluded>,
-    /// Actual angles of the servos relative to the commanded ones, front and back, if reflectors on the side links show them.
-    servos: Option<[MeasuredServo; 2]>,
     /// x, y \[m\] of the middle link, thinned.
     path: Vec<[f64; 2]>,
-    /// Notes on the track.
-    diagnoses: Vec<String>,
-    warnings: Vec<String>,
 }
 
+/// A run that was not fitted.
 #[derive(Serialize)]
 struct Excluded {
-    what: String,
+    file: String,
     reason: String,
 }
 
 /// Largest number of points of a plotted path.
 const PATH: usize = 600;
 
-impl Run {
+impl RunFigures {
     fn new(run: &RunResult, gait: &GaitSpec) -> Self {
-        let cycles = &run.cycles;
         let samples = &run.poses.samples;
         let (amplitude_rad, clockwise) = match gait {
             GaitSpec::Circle {
@@ -77,86 +54,47 @@ impl Run {
             _ => (None, false),
         };
         Self {
-            file: run.file.display().to_string(),
-            gait: run.gait.clone(),
             amplitude_rad,
             clockwise,
-            cycles: cycles.count(),
-            x_m: cycles.x.mean,
-            x_sd_m: cycles.x.sd,
-            y_m: cycles.y.mean,
-            delta_y_m: cycles.delta_y.mean,
-            delta_y_sd_m: cycles.delta_y.sd,
-            delta_theta_rad: cycles.delta_theta.mean,
-            delta_theta_sd_rad: cycles.delta_theta.sd,
-            period_s: cycles.period_s,
-            each: cycles
+            each: run
+                .cycles
                 .cycles
                 .iter()
                 .filter_map(|cycle| Some([cycle.start_s, cycle.step.as_ref()?.x]))
                 .collect(),
-            left_out: cycles
-                .left_out
-                .iter()
-                .map(|(start, reason)| Excluded {
-                    what: format!("{start:.1} s"),
-                    reason: reason.to_string(),
-                })
-                .collect(),
-            servos: run.joints.as_ref().and_then(|joints| joints.servos),
             path: samples
                 .iter()
                 .step_by(samples.len().div_ceil(PATH).max(1))
                 .map(|sample| [sample.pose.x, sample.pose.y])
                 .collect(),
-            diagnoses: run.diagnoses(),
-            warnings: run.warnings.clone(),
         }
     }
 }
 
-impl FitOutput {
-    pub(super) fn new(found: &CampaignFit, campaign: &Campaign, data: &CampaignData) -> Self {
-        let fit = &found.fit;
+impl<'a> FitOutput<'a> {
+    /// Describes the fit that the page knows by a number.
+    pub(super) fn new(fitted: &'a Fitted, number: u32) -> Self {
+        let Fitted {
+            campaign, result, ..
+        } = fitted;
         Self {
-            number: 0,
-            runs: found
+            number,
+            fit: &fitted.output,
+            figures: result
                 .runs
                 .iter()
-                .map(|run| Run::new(run, &campaign.runs[run.index].gait))
+                .map(|run| RunFigures::new(run, &campaign.runs[run.index].gait))
                 .collect(),
-            sphere_radius_m: fit.sphere_radius,
-            chi: fit.chi,
-            rmse: fit.rmse,
-            intervals: fit.intervals,
-            correlation: fit.correlation,
-            c_t_form: c_t_form(&fit.c_t_form),
-            servos: found.servos(),
-            excluded: found
+            excluded: result
                 .excluded
                 .iter()
                 .map(|run| Excluded {
-                    what: run.file.display().to_string(),
+                    file: run.file.display().to_string(),
                     reason: run.reason.clone(),
                 })
                 .collect(),
-            warnings: (data.doubts.iter().cloned())
-                .chain(
-                    other_gaits(campaign, &found.runs, &found.swimmer)
-                        .iter()
-                        .map(|other| {
-                            let track = &campaign.runs[other.index].track;
-                            format!("{}: {other}", track.display())
-                        }),
-                )
-                .chain(fit.warnings.iter().map(ToString::to_string))
-                .collect(),
-            swimmer: found.swimmer.to_toml(),
+            swimmer: result.swimmer.to_toml(),
         }
-    }
-
-    pub(super) fn numbered(self, number: u32) -> Self {
-        Self { number, ..self }
     }
 }
 
