@@ -10,6 +10,8 @@ use crate::{Course, Pose};
 
 /// Steps of the scan over the bound \[s\].
 const SCAN_STEP: f64 = 0.004;
+/// More poses than this are thinned, so that the match takes milliseconds: the link is not kept alive meanwhile.
+const MOST_POSES: usize = 1500;
 /// Fewer poses than this give no match.
 const FEWEST_POSES: usize = 24;
 /// A match with a larger uncertainty is rejected \[s\].
@@ -104,7 +106,9 @@ impl CameraDelay {
             return;
         };
         let bounds = [-LONGEST_DELAY, LINK_UNCERTAINTY];
-        let matched = match_clocks(&cycle.poses, &cycle.course, cycle.began_s, bounds);
+        let thinned = cycle.poses.len().div_ceil(MOST_POSES).max(1);
+        let poses: Vec<Pose> = cycle.poses.iter().step_by(thinned).copied().collect();
+        let matched = match_clocks(&poses, &cycle.course, cycle.began_s, bounds);
         let Some(matched) = matched.filter(|matched| matched.uncertainty_s < USEFUL_UNCERTAINTY)
         else {
             return;

@@ -12,6 +12,8 @@
 //! is lost and a controller that hangs all end in rest within one cycle. While a cycle plays, the robot is stopped at once if it
 //! comes nearer to a wall than the margin, or if it is not seen and a wall is nearer than the cycle's own motion.
 //!
+//! Each cycle is evaluated ([`Request::Evaluate`]) while the robot rests; the next cycle waits for the result.
+//!
 //! At rest the mean of the poses is compared with the prediction, which corrects the estimates of gains and drift, and the
 //! next cycle is the first of the quickest chain to the target that [`forecast::Planner`] finds with what was learned.
 
@@ -25,7 +27,7 @@ use swimmer_model::wrapped_angle;
 use crate::learning::{Learning, TrackedCycle};
 use crate::monitor::{CycleReport, Likeness, Monitor};
 use crate::pose::mean;
-use crate::{Course, Event, Interruption, Pose};
+use crate::{Course, Evaluated, Evaluation, Event, Interruption, Pose};
 
 pub use ending::Ending;
 
@@ -99,12 +101,14 @@ impl Default for Options {
 }
 
 /// Request to the robot.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Request {
     /// Play the cycles of this step, from rest to rest.
     Play(Step),
     /// Stop at once.
     Stop,
+    /// Evaluate a cycle; the result is the event [`Event::Evaluated`].
+    Evaluate(Box<Evaluation>),
 }
 
 /// Drives one robot.
@@ -135,6 +139,8 @@ pub struct Controller {
     /// The last cycle confirmed a departure that nothing explains.
     unexplained: bool,
     operator_stop: bool,
+    /// Cycle to evaluate.
+    evaluation: Option<Box<Evaluation>>,
     reports: Vec<CycleReport>,
     ending: Option<Ending>,
 }
@@ -182,6 +188,7 @@ impl Controller {
             outside: 0,
             operator_stop: false,
             unexplained: false,
+            evaluation: None,
             reports: Vec::new(),
             ending: None,
         }
@@ -193,6 +200,7 @@ impl Controller {
             Event::Pose(pose) => self.pose(pose),
             Event::Began(began_s) => self.play_began(*began_s),
             Event::AtRest(now_s) => self.at_rest(*now_s),
+            Event::Evaluated(evaluated) => self.evaluated(evaluated),
             Event::Interrupted(Interruption::Operator) => self.operator_stop(),
             Event::Interrupted(Interruption::Robot(reason)) => self.robot_stopped(reason),
             Event::Interrupted(Interruption::Link(reason)) => {
@@ -256,11 +264,7 @@ impl Controller {
                 if play.member.kind == forecast::Kind::Forward {
                     self.forward_cycles += 1;
                 }
-                if let Some(report) = self.monitor.end() {
-                    let departure = report.departure.clone();
-                    self.reports.push(report);
-                    self.end_at_departure(departure.map(|departure| departure.likeness));
-                }
+                self.evaluation = self.monitor.finish().map(Box::new);
                 self.poses.clear();
                 self.played = Some(play.member);
                 self.rest_shape = play.course.last_shape();
@@ -276,6 +280,19 @@ impl Controller {
             phase => self.phase = phase,
         }
         if self.ending.is_some() {
+            self.phase = Phase::Ended;
+        }
+    }
+
+    /// The evaluation of the last cycle is done. Results for other cycles are ignored.
+    pub fn evaluated(&mut self, evaluated: &Evaluated) {
+        let Some(report) = self.monitor.confirm(evaluated.clone()) else {
+            return;
+        };
+        let departure = report.departure.clone();
+        self.reports.push(report);
+        self.end_at_departure(departure.map(|departure| departure.likeness));
+        if self.ending.is_some() && matches!(self.phase, Phase::Resting { .. }) {
             self.phase = Phase::Ended;
         }
     }
@@ -333,7 +350,11 @@ impl Controller {
             }
             Phase::Resting { since_s } => {
                 let since_s = *since_s;
-                self.decide(since_s, now_s)
+                match self.evaluation.take() {
+                    Some(evaluation) => Some(Request::Evaluate(evaluation)),
+                    None if !self.monitor.is_confirmed() => None,
+                    None => self.decide(since_s, now_s),
+                }
             }
             Phase::Waiting { .. } | Phase::Stopping | Phase::Ended => None,
         }

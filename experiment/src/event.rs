@@ -1,6 +1,6 @@
 //! Events of robot and cameras.
 
-use crate::Pose;
+use crate::{Evaluated, Pose};
 
 /// Event of robot and cameras. Times are on the clock of the poses.
 #[derive(Debug, Clone, PartialEq)]
@@ -11,6 +11,8 @@ pub enum Event {
     Began(f64),
     /// The robot came to rest with straight joints \[s\].
     AtRest(f64),
+    /// The evaluation of a cycle is done.
+    Evaluated(Box<Evaluated>),
     /// Something that ends the run.
     Interrupted(Interruption),
 }

@@ -24,7 +24,7 @@ const OUTLIERS: f64 = 0.2;
 const END: f64 = 0.15;
 
 /// Course with its derivative by the gain of both joints.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Basis {
     pub(crate) course: Course,
     below: Course,

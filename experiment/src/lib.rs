@@ -15,7 +15,7 @@
 //! - [`match_clocks`]: offset between the clocks of robot and cameras, from arrival times ([`Delays`]) and the oscillation within
 //!   a cycle; [`CameraDelay`] does so play by play, and dates the poses.
 //! - [`Monitor`]: one [`CycleReport`] a cycle: displacement and net turn with intervals against the prediction, and a
-//!   [`Departure`] if the robot does not follow it.
+//!   [`Departure`] if the robot does not follow it. Its [`Evaluation`] may take seconds, so it is a request of its own.
 //! - [`TrackedPlay`]: a play of one gait under the monitor, with the motion over all its cycles.
 //! - [`Controller`]: drives to poses or holds a heading ([`Goal`]). After each cycle it chooses the next ([`Request`]) and learns
 //!   the robot's gains and drift; it ends with a named reason ([`Ending`]).
@@ -42,6 +42,8 @@ pub use course::Course;
 pub use delays::Delays;
 pub use event::{Event, Interruption};
 pub use filter::{FilterCounts, FilterEvent, FilterOptions, JointAngle, PoseFilter};
-pub use monitor::{CycleReport, Departure, Likeness, MeasuredMotion, Monitor};
+pub use monitor::{
+    CycleReport, Departure, Evaluated, Evaluation, Likeness, MeasuredMotion, Monitor,
+};
 pub use pose::Pose;
 pub use tracked_play::{GaitOnRobot, TankWalls, TrackedPlay};

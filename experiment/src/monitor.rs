@@ -1,39 +1,26 @@
 //! Monitor of a play: each tracked cycle against the prediction for the gait that plays.
+//!
+//! The evaluation of a cycle may take seconds, longer than a robot waits for a keep-alive. So it is separate from the monitor
+//! ([`Evaluation`]): the thread that holds the link passes it to another thread, and takes its result when it is there.
 
+mod evaluation;
+
+use std::collections::VecDeque;
 use std::fmt;
+use std::sync::Arc;
 
 use forecast::Tank;
 use nalgebra::Vector2;
 use swimmer_model::Model;
 
-use crate::fit::{Basis, Fit, fit, fit_without_outliers, model_errors};
+use self::evaluation::Cycle;
+use crate::fit::Basis;
 use crate::{Course, Pose};
 
-/// A misfit above this is no noise: the course is another one.
-const LARGEST_MISFIT: f64 = 3.0;
-/// A misfit of the cycle without outliers above this is no noise.
-const LARGEST_MISFIT_OF_MOST: f64 = 2.0;
-/// Another course explains a misfit if it leaves less than this share.
-const EXPLAINED: f64 = 0.5;
-/// Gains and drifts \[m/s\] that count as departures if they are also significant.
-const LARGEST_GAIN_ERROR: f64 = 0.025;
-const LARGEST_DRIFT: f64 = 0.12e-3;
-/// Deviations from the prediction that are significant if two cycles in a row show them.
-const SIGNIFICANT: f64 = 2.4;
-/// Error of a fitted gain by the model, and error of the net displacement by the model as its share.
-const GAIN_BY_MODEL: f64 = 0.005;
-const NET_BY_MODEL: f64 = 0.01;
-/// A wall so near \[m\] explains a misfit.
-const AT_WALL: f64 = 0.006;
-/// Number of angles at which a joint may be blocked, between the smallest and the largest of the course.
-const BLOCKED_ANGLES: u32 = 7;
+pub use evaluation::{Evaluated, Evaluation};
+
 /// Drifts of two cycles are alike within this share.
 const ALIKE: f64 = 0.6;
-/// Normal deviate of a 95 % interval.
-const NORMAL_95: f64 = 1.96;
-/// A cycle that oscillates less than this over the noise says nothing about departures.
-const FEWEST_DEVIATIONS: f64 = 4.0;
-
 /// Measured net motion of a cycle in the frame of its first heading, with half widths of 95 % intervals.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeasuredMotion {
@@ -164,18 +151,13 @@ pub struct CycleReport {
 pub struct Monitor {
     model: Model<f64>,
     tank: Option<Tank>,
-    others: Vec<(String, Course)>,
+    others: Arc<Vec<(String, Course)>>,
     cycle: Option<Cycle>,
     number: u32,
+    /// Starts of the cycles that have ended and are not confirmed \[s\].
+    unconfirmed: VecDeque<f64>,
     /// Suspected fault of the previous cycle, and the cycle in which it began.
     suspicion: Option<Departure>,
-}
-
-#[derive(Debug)]
-struct Cycle {
-    basis: Basis,
-    began_s: f64,
-    poses: Vec<Pose>,
 }
 
 impl Monitor {
@@ -184,16 +166,17 @@ impl Monitor {
         Self {
             model,
             tank,
-            others: Vec::new(),
+            others: Arc::default(),
             cycle: None,
             number: 0,
+            unconfirmed: VecDeque::new(),
             suspicion: None,
         }
     }
 
     /// Names a gait that the robot may play by mistake.
     pub fn know(&mut self, name: &str, course: Course) {
-        self.others.push((name.to_owned(), course));
+        Arc::make_mut(&mut self.others).push((name.to_owned(), course));
     }
 
     /// A cycle begins. One that has not ended is dropped.
@@ -220,158 +203,54 @@ impl Monitor {
         self.cycle = None;
     }
 
-    /// The cycle has ended. Returns `None` if none was under way.
-    pub fn end(&mut self) -> Option<CycleReport> {
-        let mut cycle = self.cycle.take()?;
-        cycle.poses.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
-        let errors = model_errors(&cycle.basis.course);
-        let mut fitted = fit(&cycle.basis, &cycle.poses, cycle.began_s, errors);
-        if fitted
-            .as_ref()
-            .is_some_and(|fit| fit.misfit > LARGEST_MISFIT)
-        {
-            // A burst of outliers is no departure: most poses are as predicted.
-            let most = fit_without_outliers(&cycle.basis, &cycle.poses, cycle.began_s, errors);
-            fitted = most
-                .filter(|fit| fit.misfit <= LARGEST_MISFIT_OF_MOST)
-                .or(fitted);
-        }
+    /// The cycle has ended. Returns its evaluation, whose result [`Self::confirm`] takes; `None` if no cycle was under way.
+    pub fn finish(&mut self) -> Option<Evaluation> {
+        let cycle = self.cycle.take()?;
+        self.unconfirmed.push_back(cycle.began_s);
         let number = self.number;
         self.number += 1;
-        let says_something = cycle.says_something();
-        let looks_like = fitted
-            .as_ref()
-            .filter(|_| says_something)
-            .and_then(|fit| self.likeness(&cycle, fit));
-        let departure = self.confirmed(looks_like.clone(), fitted.is_some() && says_something);
-        Some(CycleReport {
-            cycle: number,
-            predicted: cycle.basis.course.net(),
-            measured: fitted.as_ref().and_then(measured),
-            gain: fitted.as_ref().map(|fit| [fit.gain, fit.sigma_gain]),
-            drift: fitted
-                .as_ref()
-                .map(|fit| [fit.drift.x, fit.drift.y, fit.sigma_drift]),
-            poses: cycle.poses.len(),
-            looks_like,
-            departure,
+        Some(Evaluation {
+            model: self.model,
+            tank: self.tank,
+            others: Arc::clone(&self.others),
+            cycle,
+            number,
         })
     }
 
-    /// A departure is one that two cycles in a row show. Cycles that say nothing do not count.
-    fn confirmed(&mut self, looks_like: Option<Likeness>, counts: bool) -> Option<Departure> {
-        if !counts {
-            return None;
+    /// Takes the result of an evaluation, in the order in which the cycles ended. A departure is one that two cycles in a row show;
+    /// cycles that say nothing do not count. Returns `None` if the cycle is not one of this monitor.
+    pub fn confirm(&mut self, evaluated: Evaluated) -> Option<CycleReport> {
+        self.unconfirmed
+            .pop_front_if(|began_s| began_s.total_cmp(&evaluated.began_s).is_eq())?;
+        let mut report = evaluated.report;
+        if evaluated.is_informative {
+            report.departure = self.departure(&report);
         }
-        let number = self.number.saturating_sub(1);
+        Some(report)
+    }
+
+    /// Returns `true` if the reports of all cycles that have ended are known.
+    pub fn is_confirmed(&self) -> bool {
+        self.unconfirmed.is_empty()
+    }
+
+    /// The cycle has ended, and is evaluated at once. Returns `None` if no cycle was under way.
+    pub fn end(&mut self) -> Option<CycleReport> {
+        let evaluation = self.finish()?;
+        self.confirm(evaluation.run())
+    }
+
+    /// Departure that this cycle and the one before show.
+    fn departure(&mut self, report: &CycleReport) -> Option<Departure> {
         let before = self.suspicion.take();
-        let likeness = looks_like?;
+        let likeness = report.looks_like.clone()?;
         let same = before.filter(|before| before.likeness.is_like(&likeness));
         let departure = Departure {
-            since: same.as_ref().map_or(number, |before| before.since),
+            since: same.as_ref().map_or(report.cycle, |before| before.since),
             likeness,
         };
         self.suspicion = Some(departure.clone());
         same.is_some().then_some(departure)
-    }
-
-    fn likeness(&self, cycle: &Cycle, nominal: &Fit) -> Option<Likeness> {
-        if nominal.misfit > LARGEST_MISFIT {
-            return Some(self.other_course(cycle, nominal));
-        }
-        let course = &cycle.basis.course;
-        let sigma = nominal.sigma_gain.hypot(GAIN_BY_MODEL);
-        let off = (nominal.gain - 1.0).abs();
-        if off > LARGEST_GAIN_ERROR && off > SIGNIFICANT * sigma {
-            return Some(Likeness::Gain(nominal.gain));
-        }
-        let by_model = NET_BY_MODEL * course.net().position().norm() / course.duration_s();
-        let sigma = nominal.sigma_drift.hypot(by_model);
-        let drift = nominal.drift.norm();
-        (drift > LARGEST_DRIFT && drift > SIGNIFICANT * sigma)
-            .then(|| Likeness::Drift(nominal.drift.into()))
-    }
-
-    /// The course that explains the poses better than the predicted one.
-    fn other_course(&self, cycle: &Cycle, nominal: &Fit) -> Likeness {
-        let course = &cycle.basis.course;
-        let errors = model_errors(course);
-        let misfit = |other: Course| {
-            let basis = Basis::new(&self.model, other);
-            fit(&basis, &cycle.poses, cycle.began_s, errors).map_or(f64::INFINITY, |fit| fit.misfit)
-        };
-        let blocked = [0, 1].into_iter().flat_map(|joint| {
-            let angles = blocked_angles(course, joint);
-            angles.map(move |angle| (joint, angle))
-        });
-        let blocked = blocked.map(|(joint, angle)| {
-            let hold = |mut shape: Vector2<f64>| {
-                shape[joint] = angle;
-                shape
-            };
-            let held = misfit(course.with_shapes(&self.model, hold));
-            let number = if joint == 0 { 1 } else { 2 };
-            (held, Likeness::BlockedJoint(number))
-        });
-        let others = self.others.iter().map(|(name, other)| {
-            let other = other.within(course.duration_s());
-            (misfit(other), Likeness::WrongGait(Some(name.clone())))
-        });
-        let best = blocked.chain(others).min_by(|a, b| a.0.total_cmp(&b.0));
-        if let Some((misfit, likeness)) = best
-            && misfit < EXPLAINED * nominal.misfit
-        {
-            return likeness;
-        }
-        if cycle.is_at_wall(&self.model, self.tank.as_ref()) {
-            return Likeness::Wall;
-        }
-        Likeness::WrongGait(None)
-    }
-}
-
-fn measured(fit: &Fit) -> Option<MeasuredMotion> {
-    let ([start, end], [sigma, turn_sigma]) = fit.ends?;
-    let net = start.inverse() * end;
-    Some(MeasuredMotion {
-        x_m: net.x,
-        y_m: net.y,
-        turn_rad: net.theta,
-        interval_m: NORMAL_95 * sigma,
-        interval_rad: NORMAL_95 * turn_sigma,
-        from: start,
-        to: end,
-    })
-}
-
-/// Angles of one joint between the smallest and the largest of a course \[rad\].
-fn blocked_angles(course: &Course, joint: usize) -> impl Iterator<Item = f64> + use<> {
-    let angle = |i: u32| course.shape_at(course.duration_s() * f64::from(i) / 100.0)[joint];
-    let (low, high) = (0..=100)
-        .map(angle)
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), angle| {
-            (low.min(angle), high.max(angle))
-        });
-    (0..BLOCKED_ANGLES)
-        .map(move |i| low + (high - low) * f64::from(i) / f64::from(BLOCKED_ANGLES - 1))
-}
-
-impl Cycle {
-    /// Returns `true` if the oscillation is well above the noise.
-    fn says_something(&self) -> bool {
-        let [position, heading] = self.basis.course.oscillation();
-        self.poses.first().is_some_and(|pose| {
-            position > FEWEST_DEVIATIONS * pose.sigma_position_m
-                && heading > FEWEST_DEVIATIONS * pose.sigma_heading_rad
-        })
-    }
-
-    fn is_at_wall(&self, model: &Model<f64>, tank: Option<&Tank>) -> bool {
-        let Some(tank) = tank else { return false };
-        self.poses.iter().any(|pose| {
-            let time = pose.time_s - self.began_s;
-            let course = &self.basis.course;
-            course.distance_to_wall(model, tank, &pose.placed(), time) < AT_WALL
-        })
     }
 }

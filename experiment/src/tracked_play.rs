@@ -1,10 +1,12 @@
 //! Play of one gait under the monitor, cycle after cycle.
 
+use std::collections::VecDeque;
+
 use forecast::Tank;
 use swimmer_model::Model;
 
 use crate::monitor::{Departure, MeasuredMotion};
-use crate::{Course, CycleReport, Monitor, Pose};
+use crate::{Course, CycleReport, Evaluated, Evaluation, Monitor, Pose};
 
 /// Poses in a row that must lie outside the margin: one may be wrong.
 const POSES_OUTSIDE: u32 = 3;
@@ -40,6 +42,9 @@ pub struct TrackedPlay {
     cycles: u32,
     outside: u32,
     last_seen_s: Option<f64>,
+    /// Cycles that have ended.
+    ended: u32,
+    evaluations: VecDeque<Evaluation>,
     reports: Vec<CycleReport>,
 }
 
@@ -67,13 +72,15 @@ impl TrackedPlay {
             cycles,
             outside: 0,
             last_seen_s: None,
+            ended: 0,
+            evaluations: VecDeque::new(),
             reports: Vec::new(),
         }
     }
 
     /// Takes a pose.
     pub fn pose(&mut self, pose: &Pose) {
-        while self.cycle() < self.cycles
+        while self.ended < self.cycles
             && pose.time_s > self.cycle_began_s() + self.gait.period_s + LATE_POSES_S
         {
             self.next_cycle();
@@ -91,15 +98,30 @@ impl TrackedPlay {
         self.outside = if is_outside { self.outside + 1 } else { 0 };
     }
 
-    /// The robot came to rest: the cycles that are left are evaluated.
+    /// The robot came to rest: the cycles that are left have ended.
     pub fn at_rest(&mut self) {
-        while self.cycle() < self.cycles {
-            let before = self.cycle();
+        while self.ended < self.cycles {
+            let before = self.ended;
             self.next_cycle();
-            if self.cycle() == before {
+            if self.ended == before {
                 break;
             }
         }
+    }
+
+    /// The next cycle to evaluate, if there is one. Its result is passed to [`Self::evaluated`].
+    pub fn take_evaluation(&mut self) -> Option<Evaluation> {
+        self.evaluations.pop_front()
+    }
+
+    /// Takes the result of an evaluation, in the order of the cycles. Results for other plays are ignored.
+    pub fn evaluated(&mut self, evaluated: Evaluated) {
+        self.reports.extend(self.monitor.confirm(evaluated));
+    }
+
+    /// Returns `true` if no evaluation is outstanding.
+    pub fn is_evaluated(&self) -> bool {
+        self.monitor.is_confirmed()
     }
 
     /// Returns `true` if the robot is nearer to a wall than the margin.
@@ -109,7 +131,7 @@ impl TrackedPlay {
 
     /// Returns `true` if all cycles are evaluated.
     pub fn is_whole(&self) -> bool {
-        self.cycle() >= self.cycles
+        self.ended >= self.cycles && self.is_evaluated()
     }
 
     /// Time of the latest pose \[s\].
@@ -122,24 +144,24 @@ impl TrackedPlay {
         self.began_s
     }
 
-    /// Reports of the cycles that have ended.
+    /// Reports of the cycles that are evaluated.
     pub fn reports(&self) -> &[CycleReport] {
         &self.reports
     }
 
-    /// Departure that the latest cycle confirms.
+    /// Departure that the latest report confirms.
     pub fn departure(&self) -> Option<&Departure> {
         self.reports.last()?.departure.as_ref()
     }
 
-    /// Predicted motion over the cycles that have ended.
+    /// Predicted motion over the cycles that are evaluated.
     pub fn predicted(&self) -> swimmer_model::Pose<f64> {
         let identity = swimmer_model::Pose::identity();
         let nets = self.reports.iter().map(|report| report.predicted);
         nets.fold(identity, |before, net| before * net)
     }
 
-    /// Measured motion over the cycles that have ended. Returns `None` if the start of the first or the end of the last was not
+    /// Measured motion over the cycles that are evaluated. Returns `None` if the start of the first or the end of the last was not
     /// seen.
     pub fn measured(&self) -> Option<MeasuredMotion> {
         let first = self.reports.first()?.measured?;
@@ -147,21 +169,17 @@ impl TrackedPlay {
         Some(MeasuredMotion::spanning(&first, &last))
     }
 
-    /// Cycle under way.
-    fn cycle(&self) -> u32 {
-        u32::try_from(self.reports.len()).unwrap_or(u32::MAX)
-    }
-
     fn cycle_began_s(&self) -> f64 {
-        self.began_s + f64::from(self.cycle()) * self.gait.period_s
+        self.began_s + f64::from(self.ended) * self.gait.period_s
     }
 
-    /// Evaluates the cycle under way, and begins the next one.
+    /// Ends the cycle under way, and begins the next one.
     fn next_cycle(&mut self) {
-        if let Some(report) = self.monitor.end() {
-            self.reports.push(report);
+        if let Some(evaluation) = self.monitor.finish() {
+            self.evaluations.push_back(evaluation);
+            self.ended += 1;
         }
-        if self.cycle() < self.cycles {
+        if self.ended < self.cycles {
             let began = self.cycle_began_s();
             self.monitor.begin(self.gait.course.clone(), began);
         }

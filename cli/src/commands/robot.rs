@@ -4,6 +4,7 @@ mod access;
 mod bench;
 mod configure;
 mod dashboard;
+mod evaluator;
 mod find;
 mod flash;
 mod go;

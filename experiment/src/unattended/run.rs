@@ -3,7 +3,7 @@
 //! ```text
 //!            trial left              reached             settled            began
 //!  Between ─────────────► Going ──────────────► Settling ─────► Waiting ───────────► Playing
-//!     ▲                     │ no way, lost, …      │ lost          │                    │ last cycle ended
+//!     ▲                     │ no way, lost, …      │ lost          │                    │ last cycle ended, evaluated
 //!     │                     ▼                      ▼               ▼                    ▼
 //!     │                   Ended ◄───────────────────────────────────── battery, e-stop, link, operator
 //!     └───────────────────────────────────────── finished, or failed: again, or given up
@@ -19,8 +19,8 @@ use forecast::{Planner, Step};
 
 use super::{Entry, Journal, MeasuredCycle, Plan, StartPose, StopRules, Trial};
 use crate::{
-    Controller, CycleReport, Ending, Event, GaitOnRobot, Goal, Interruption, Likeness, Options,
-    Pose, Request as Drive, TankWalls, TrackedPlay,
+    Controller, CycleReport, Ending, Evaluated, Evaluation, Event, GaitOnRobot, Goal, Interruption,
+    Likeness, Options, Pose, Request as Drive, TankWalls, TrackedPlay,
 };
 
 /// Request to the caller, executed in order.
@@ -43,6 +43,8 @@ pub enum Request {
     },
     /// Stop at once.
     Stop,
+    /// Evaluate a cycle; the result is the event [`Event::Evaluated`].
+    Evaluate(Box<Evaluation>),
 }
 
 /// Reason for the end of a run.
@@ -88,6 +90,8 @@ enum Phase {
     },
     Waiting,
     Playing(Box<TrackedPlay>),
+    /// At rest after the last cycle; its evaluation is outstanding.
+    Evaluating(Box<TrackedPlay>),
     /// Stopping after an event that fails the trial.
     Stopping {
         reason: String,
@@ -136,6 +140,7 @@ impl Run {
             Event::Pose(pose) => self.pose(&pose),
             Event::Began(time_s) => self.began(time_s),
             Event::AtRest(time_s) => self.at_rest(time_s),
+            Event::Evaluated(evaluated) => self.evaluated(*evaluated),
             Event::Interrupted(interruption) => self.interrupted(&interruption),
         }
     }
@@ -175,6 +180,7 @@ impl Run {
             Phase::Between
             | Phase::Settling { .. }
             | Phase::Waiting
+            | Phase::Evaluating(_)
             | Phase::Stopping { .. }
             | Phase::Ended => {}
         }
@@ -215,10 +221,22 @@ impl Run {
             }
             Phase::Playing(mut playing) => {
                 playing.at_rest();
-                self.evaluate(&playing);
+                self.phase = Phase::Evaluating(playing);
             }
             Phase::Stopping { reason } => self.failed(&reason),
             phase => self.phase = phase,
+        }
+    }
+
+    fn evaluated(&mut self, evaluated: Evaluated) {
+        match &mut self.phase {
+            Phase::Going(controller) => controller.evaluated(&evaluated),
+            Phase::Playing(playing) | Phase::Evaluating(playing) => playing.evaluated(evaluated),
+            Phase::Between
+            | Phase::Settling { .. }
+            | Phase::Waiting
+            | Phase::Stopping { .. }
+            | Phase::Ended => {}
         }
     }
 
@@ -241,7 +259,7 @@ impl Run {
     fn end(&mut self, ending: RunEnding) {
         if matches!(
             self.phase,
-            Phase::Waiting | Phase::Playing(_) | Phase::Stopping { .. }
+            Phase::Waiting | Phase::Playing(_) | Phase::Evaluating(_) | Phase::Stopping { .. }
         ) {
             self.requests.push_back(Request::EndTrack);
         }
@@ -264,6 +282,9 @@ impl Run {
             Phase::Going(controller) => match controller.poll(now_s) {
                 Some(Drive::Play(step)) => self.requests.push_back(Request::Drive(step)),
                 Some(Drive::Stop) => self.requests.push_back(Request::Stop),
+                Some(Drive::Evaluate(evaluation)) => {
+                    self.requests.push_back(Request::Evaluate(evaluation));
+                }
                 None if controller.is_over() => {
                     let ending = controller.ending().cloned();
                     self.arrived(ending, now_s);
@@ -277,7 +298,19 @@ impl Run {
                     self.play();
                 }
             }
+            Phase::Evaluating(playing) => {
+                let outstanding = std::iter::from_fn(|| playing.take_evaluation());
+                self.requests
+                    .extend(outstanding.map(|cycle| Request::Evaluate(Box::new(cycle))));
+                if playing.is_evaluated() {
+                    self.finish();
+                }
+            }
             Phase::Playing(playing) => {
+                if let Some(evaluation) = playing.take_evaluation() {
+                    self.requests
+                        .push_back(Request::Evaluate(Box::new(evaluation)));
+                }
                 let departed = playing.reports().last().and_then(blocking);
                 let reason = if playing.is_outside() {
                     "the robot came nearer to a wall than the margin".to_owned()
@@ -359,8 +392,11 @@ impl Run {
         self.phase = Phase::Waiting;
     }
 
-    /// A play has ended: the trial is finished if all counted cycles were measured.
-    fn evaluate(&mut self, playing: &TrackedPlay) {
+    /// A play is evaluated: the trial is finished if all counted cycles were measured.
+    fn finish(&mut self) {
+        let Phase::Evaluating(playing) = std::mem::replace(&mut self.phase, Phase::Between) else {
+            return;
+        };
         let departure = playing.reports().last().and_then(blocking);
         if let Some(likeness) = departure {
             self.failed(&format!(

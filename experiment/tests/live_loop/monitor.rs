@@ -3,7 +3,9 @@
 use std::sync::OnceLock;
 
 use crate::virtual_lab::{Lab, Notice, TANK, Truth, model, planner, servos};
-use experiment::{Course, CycleReport, Likeness, Monitor};
+use experiment::{
+    Course, CycleReport, GaitOnRobot, Likeness, Monitor, Pose, TankWalls, TrackedPlay,
+};
 use forecast::{Kind, Member};
 use nalgebra::Vector2;
 use rand::{RngExt, SeedableRng};
@@ -217,4 +219,57 @@ fn a_wrong_gait_is_flagged_and_named() {
         let is = |likeness: &Likeness| *likeness == Likeness::WrongGait(Some(name.to_owned()));
         flagged(&format!("{name} instead"), same, kind, played, is);
     }
+}
+
+/// While the evaluation of a cycle takes seconds, the play goes on: a wall is noticed, and the results come in order.
+#[test]
+fn a_slow_evaluation_delays_no_stop() {
+    let circle = swimmer_files::AnyGait::circle(1.2);
+    let table = forecast::table(&circle, 512).unwrap();
+    let course = Course::of_cycle(&model(), &table, 6_000_000, &servos());
+    let gait = GaitOnRobot {
+        course: course.clone(),
+        period_s: 6.0,
+    };
+    let walls = TankWalls {
+        tank: TANK,
+        margin_m: 0.01,
+    };
+    let others = std::iter::empty();
+    let mut play = TrackedPlay::new(&model(), Some(walls), gait.clone(), others, 10.0, 3);
+    // A robot whose joints do not move, first in the middle of the tank, then at a wall.
+    let pose = |time_s: f64, x_m: f64| Pose {
+        time_s,
+        x_m: x_m + 1e-4 * (time_s * 1e3).sin(),
+        y_m: 0.0,
+        heading_rad: 1e-3 * (time_s * 7e2).sin(),
+        sigma_position_m: 1e-4,
+        sigma_heading_rad: 1e-3,
+    };
+    let mut time_s = 10.0;
+    while time_s < 22.5 {
+        time_s += 0.01;
+        play.pose(&pose(time_s, 0.0));
+        assert!(!play.is_outside());
+    }
+    let first = play.take_evaluation().unwrap();
+    let second = play.take_evaluation().unwrap();
+    assert!(play.take_evaluation().is_none() && !play.is_evaluated());
+    for _ in 0..10 {
+        time_s += 0.01;
+        play.pose(&pose(time_s, 0.5 * TANK.length));
+    }
+    assert!(play.is_outside(), "the wall is noticed meanwhile");
+    // Results in another order, and those of another play, are ignored.
+    let second = second.run();
+    play.evaluated(second.clone());
+    assert!(play.reports().is_empty());
+    let mut other = Monitor::new(model(), None);
+    other.begin(course, 3.0);
+    play.evaluated(other.finish().unwrap().run());
+    assert!(play.reports().is_empty() && play.departure().is_none());
+    play.evaluated(first.run());
+    play.evaluated(second);
+    let departure = play.departure().unwrap();
+    assert!(departure.since == 0 && play.is_evaluated(), "{departure:?}");
 }

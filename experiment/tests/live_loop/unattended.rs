@@ -1,13 +1,13 @@
 //! The unattended experiment: resumed after any cut of its journal, and honest about equal gaits.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use crate::virtual_lab::{model, planner, servos};
 use experiment::unattended::{
     Entry, Journal, Measure, MeasuredCycle, Plan, PlannedGait, Request, Run, RunEnding, StartPose,
     StopRules, compare, randomised,
 };
-use experiment::{Course, Event, GaitOnRobot, Interruption, Pose};
+use experiment::{Course, Evaluation, Event, GaitOnRobot, Interruption, Pose};
 use forecast::playlist::PlaylistTable;
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
@@ -79,6 +79,10 @@ struct Bench {
     tracks: BTreeSet<String>,
     /// No frames from then on.
     dark_from: f64,
+    /// Time that the evaluation of a cycle takes \[s\].
+    evaluation_s: f64,
+    /// Evaluations under way, with the times of their results.
+    evaluations: VecDeque<(f64, Evaluation)>,
     /// The robot reports this once, at this time.
     interruption: Option<(f64, Interruption)>,
     stopped: bool,
@@ -95,6 +99,8 @@ impl Bench {
             track: None,
             tracks: BTreeSet::new(),
             dark_from: f64::INFINITY,
+            evaluation_s: 0.0,
+            evaluations: VecDeque::new(),
             interruption: None,
             stopped: false,
         }
@@ -123,6 +129,11 @@ impl Bench {
             Request::BeginTrack(name) => self.track = Some(name),
             Request::EndTrack => self.tracks.extend(self.track.take()),
             Request::Stop => self.stopped = true,
+            Request::Evaluate(evaluation) => {
+                let begins = self.evaluations.back().map_or(self.now, |(due, _)| *due);
+                let due = begins.max(self.now) + self.evaluation_s;
+                self.evaluations.push_back((due, *evaluation));
+            }
         }
         None
     }
@@ -176,6 +187,10 @@ impl Bench {
             }
             if let Some(time) = rest {
                 run.event(Event::AtRest(time));
+            }
+            while let Some((_, cycle)) = self.evaluations.pop_front_if(|(due, _)| *due <= self.now)
+            {
+                run.event(Event::Evaluated(Box::new(cycle.run())));
             }
             if self
                 .interruption
@@ -232,6 +247,25 @@ fn a_run_finishes_every_trial_as_predicted() {
         );
         assert!((measured - gait.predicted_m).abs() < 2e-4, "{gait:?}");
         assert_eq!(gait.runs, 2);
+    }
+}
+
+/// Evaluations that take longer than a cycle delay the next trial, and change nothing that is measured.
+#[test]
+fn slow_evaluations_change_no_result() {
+    let (plan, gaits) = two_circles();
+    let mut bench = Bench::new(&[]);
+    bench.evaluation_s = 1.3 * PERIOD_S;
+    assert_eq!(bench.run(&plan, &gaits), RunEnding::Complete);
+    assert!(bench.evaluations.is_empty(), "all results were waited for");
+    let compared = |bytes: &[u8]| compare(&plan, &Journal::parse(bytes).unwrap());
+    for (slow, quick) in compared(&bench.journal)
+        .gaits
+        .iter()
+        .zip(compared(whole_journal()).gaits)
+    {
+        let (slow, quick) = (slow.measured_m.unwrap(), quick.measured_m.unwrap());
+        assert!((slow - quick).abs() < 1e-4, "{slow} {quick}");
     }
 }
 

@@ -379,6 +379,7 @@ fn exchange(lab: &mut Lab, controller: &mut Controller, planner: &Planner) {
         match request {
             Request::Play(step) => lab.start(planner.gait(&step.member), step),
             Request::Stop => lab.stop(),
+            Request::Evaluate(evaluation) => controller.evaluated(&evaluation.run()),
         }
     }
 }

@@ -153,6 +153,7 @@ impl Executor<'_> {
             }
             Request::EndTrack => self.bench.end_track()?,
             Request::Stop => return Ok(self.bench.stop()),
+            Request::Evaluate(evaluation) => self.bench.evaluate(evaluation)?,
             Request::Drive(step) => {
                 let table = self.planner.checked_table(&step);
                 let table = table.map_err(|error| Failure::tried(&error))?;

@@ -4,7 +4,7 @@
 use std::path::Path;
 use std::time::Duration;
 
-use experiment::{Course, Event, Interruption};
+use experiment::{Course, Evaluated, Evaluation, Event, Interruption};
 use forecast::{PlaylistTable, Servos};
 use host_link::LinkError;
 use link_protocol::{Checked, Configuration, StateName, Status, StopCause, Telemetry};
@@ -14,6 +14,7 @@ use swimmer_model::Model;
 use twin::is_configured_as;
 
 use super::access::{Access, RobotConnection};
+use super::evaluator::Evaluator;
 use super::motion::MAY_JUMP;
 use super::outputs::cause;
 use super::passive;
@@ -51,6 +52,9 @@ struct Play {
 pub(crate) struct Bench {
     line: RobotConnection,
     tracking: Tracking,
+    evaluator: Evaluator,
+    /// Time stands still while a cycle is evaluated, so that a run in virtual time is the same every time.
+    is_virtual: bool,
     interrupt: Interrupt,
     model: Model<f64>,
     servos: Servos,
@@ -107,6 +111,8 @@ impl Bench {
         Ok(Self {
             line,
             tracking,
+            evaluator: Evaluator::start(Evaluation::run)?,
+            is_virtual,
             interrupt,
             model,
             servos,
@@ -157,10 +163,15 @@ impl Bench {
     /// # Errors
     /// If a track cannot be written.
     pub(crate) fn advance(&mut self) -> Outcome<Vec<Event>> {
+        let mut events = if self.is_virtual {
+            self.remaining_evaluations()?
+        } else {
+            in_boxes(self.evaluator.take())
+        };
         let news = self.line.beat();
         let now_s = self.now_s();
         let poses = self.tracking.poses(now_s)?;
-        let mut events: Vec<Event> = poses.into_iter().map(Event::Pose).collect();
+        events.extend(poses.into_iter().map(Event::Pose));
         if self.is_stopped_by_operator() && !self.operator_reported {
             self.operator_reported = true;
             events.push(Event::Interrupted(Interruption::Operator));
@@ -179,6 +190,22 @@ impl Bench {
             events.push(Event::Interrupted(Interruption::Robot(reason)));
         }
         Ok(events)
+    }
+
+    /// Evaluates a cycle while the link goes on; [`Self::advance`] returns the result.
+    ///
+    /// # Errors
+    /// If the thread that evaluates has ended.
+    pub(crate) fn evaluate(&mut self, evaluation: Box<Evaluation>) -> Outcome {
+        self.evaluator.submit(evaluation)
+    }
+
+    /// Waits for the results of all evaluations. The link is not kept alive meanwhile.
+    ///
+    /// # Errors
+    /// As [`Self::evaluate`].
+    pub(super) fn remaining_evaluations(&mut self) -> Outcome<Vec<Event>> {
+        Ok(in_boxes(self.evaluator.wait()?))
     }
 
     /// Returns `true` if the operator stops, here or by another process.
@@ -322,6 +349,11 @@ impl Bench {
         }
         self.line.close()
     }
+}
+
+fn in_boxes(results: Vec<Evaluated>) -> Vec<Event> {
+    let boxed = results.into_iter().map(Box::new);
+    boxed.map(Event::Evaluated).collect()
 }
 
 fn stopped_by_itself(why: StopCause) -> Event {

@@ -155,6 +155,10 @@ fn drive(
                 bench.play(step.member.word(false), &table)
             }
             Some(Request::Stop) => bench.stop(),
+            Some(Request::Evaluate(evaluation)) => {
+                bench.evaluate(evaluation)?;
+                None
+            }
             None => None,
         };
         if let Some(event) = event {

@@ -1,10 +1,10 @@
 //! `swimmer robot play --track`: a play under the monitor, each cycle against its prediction.
 
-use std::fmt;
+use std::{fmt, iter};
 
 use experiment::{
-    Course, CycleReport, Departure, Event, GaitOnRobot, Interruption, MeasuredMotion, TankWalls,
-    TrackedPlay,
+    Course, CycleReport, Departure, Evaluated, Event, GaitOnRobot, Interruption, MeasuredMotion,
+    TankWalls, TrackedPlay,
 };
 use forecast::PlaylistTable;
 use serde::Serialize;
@@ -159,9 +159,11 @@ impl Monitored {
     /// Waits for the end of the play; stops the robot if it is lost, comes too near to a wall, or if the operator stops.
     fn run(&mut self, bench: &mut Bench) -> Outcome {
         let begun_s = bench.now_s();
-        loop {
+        let mut is_at_rest = false;
+        while !(is_at_rest && self.is_evaluated()) {
             for event in bench.advance()? {
                 match event {
+                    Event::Evaluated(evaluated) => self.evaluated(*evaluated),
                     Event::Pose(pose) => {
                         if let Some(play) = &mut self.play {
                             play.pose(&pose);
@@ -181,8 +183,7 @@ impl Monitored {
                         if let Some(play) = self.play.as_mut().filter(|_| self.reason.is_none()) {
                             play.at_rest();
                         }
-                        self.show();
-                        return Ok(());
+                        is_at_rest = true;
                     }
                     Event::Interrupted(Interruption::Operator) => {
                         self.stop(bench, Reason::Operator)?;
@@ -191,19 +192,49 @@ impl Monitored {
                         Interruption::Robot(reason) | Interruption::Link(reason),
                     ) => {
                         self.reason.get_or_insert(Reason::Robot(reason));
+                        self.pass_evaluations(bench)?;
+                        for event in bench.remaining_evaluations()? {
+                            if let Event::Evaluated(evaluated) = event {
+                                self.evaluated(*evaluated);
+                            }
+                        }
                         return Ok(());
                     }
                 }
             }
-            self.show();
             let now_s = bench.now_s();
-            let Some(play) = &self.play else { continue };
+            self.pass_evaluations(bench)?;
+            let Some(play) = self.play.as_ref().filter(|_| !is_at_rest) else {
+                continue;
+            };
             let blank_s = now_s - play.last_seen_s().unwrap_or(begun_s);
             if play.is_outside() {
                 self.stop(bench, Reason::Wall)?;
             } else if blank_s > LONGEST_BLANK_S {
                 self.stop(bench, Reason::Lost(blank_s))?;
             }
+        }
+        Ok(())
+    }
+
+    fn is_evaluated(&self) -> bool {
+        self.play.as_ref().is_none_or(TrackedPlay::is_evaluated)
+    }
+
+    /// Has the cycles evaluated that have ended.
+    fn pass_evaluations(&mut self, bench: &mut Bench) -> Outcome {
+        let cycles = self.play.iter_mut();
+        for evaluation in cycles.flat_map(|play| iter::from_fn(|| play.take_evaluation())) {
+            bench.evaluate(Box::new(evaluation))?;
+        }
+        Ok(())
+    }
+
+    /// Takes the report of a cycle, and prints it.
+    fn evaluated(&mut self, evaluated: Evaluated) {
+        if let Some(play) = &mut self.play {
+            play.evaluated(evaluated);
+            self.show();
         }
     }
 
@@ -219,7 +250,7 @@ impl Monitored {
         }
     }
 
-    /// Prints the cycles that have ended since, and departures when they are found.
+    /// Prints the cycles that were evaluated since, and departures when they are found.
     fn show(&mut self) {
         let Some(play) = &self.play else { return };
         let reports = play.reports();
