@@ -121,7 +121,7 @@ impl PoseFilter {
         if self.options.reflectors.body.is_some() {
             return self.is_tracked();
         }
-        self.is_tracked() && self.has_names() && self.order.is_settled()
+        self.is_tracked() && self.has_names() && self.order.is_known()
     }
 
     /// Pose at the last frame; `None` if the robot is not found.

@@ -1,6 +1,6 @@
 //! Both reflectors of a frame: order of front and back, poses that jump.
 
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 use calibrate::{End, FollowedPair, Sighting, pose_of_pair};
 use nalgebra::Vector3;
@@ -16,6 +16,9 @@ use super::{CONFIRMED, Doubtful, FilterEvent, PoseFilter, goes_by};
 const LEAST_NOISE_M: f64 = 2e-5;
 /// Weight of a frame in the running estimate of the noise.
 const NOISE_WEIGHT: f64 = 0.01;
+
+/// Log-likelihood ratio from which the heading decides the order after a gap: 1000 to 1.
+const CLEAR: f64 = 7.0;
 
 impl PoseFilter {
     pub(super) fn has_names(&self) -> bool {
@@ -123,24 +126,21 @@ impl PoseFilter {
         None
     }
 
-    /// The order of a new stretch: the heading goes on if it is known well enough, else names decide.
+    /// The order of a new stretch: the heading continues it if it is known well enough, else names decide.
     fn order_after_gap(&self, estimate: &Estimate, pair: &FollowedPair) -> Order {
-        let sigma = estimate.heading.variance().sqrt();
-        if 3.0 * sigma > FRAC_PI_2 {
-            return if self.has_names() {
-                Order::open()
-            } else {
-                Order::settled(false)
-            };
-        }
         let heading = self.measured(pair, Order::settled(false)).theta;
-        let off = wrapped_angle(heading - estimate.heading.position());
-        let exchanged = off.abs() > FRAC_PI_2;
-        if self.order.is_settled() {
-            Order::settled(exchanged)
-        } else {
-            self.order.with(exchanged)
+        let off = wrapped_angle(heading - estimate.heading.position()).abs();
+        let exchanged = off > FRAC_PI_2;
+        if !self.has_names() {
+            return Order::settled(exchanged);
         }
+        // Log-likelihood of this order over that of the other one.
+        let nearer = off.min(PI - off);
+        let evidence = PI * (0.5 * PI - nearer) / estimate.heading.variance();
+        if evidence < CLEAR {
+            return Order::open();
+        }
+        self.order.continued(exchanged)
     }
 
     fn jumps_to(&self, estimate: &Estimate, pair: &FollowedPair, order: Order) -> bool {

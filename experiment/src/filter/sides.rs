@@ -10,7 +10,7 @@ use super::{FilterOptions, JointAngle, PoseFilter, goes_by};
 impl PoseFilter {
     /// Joint angles, if the pose of this frame is believed and the order is settled.
     pub(super) fn take_sides(&mut self, frame: &Frame, pair: &FollowedPair) {
-        if self.doubtful.is_some() || self.estimate.is_none() || !self.order.is_settled() {
+        if self.doubtful.is_some() || self.estimate.is_none() || !self.order.is_known() {
             return;
         }
         let pose = self.measured(pair, self.order);

@@ -152,8 +152,8 @@ impl Cameras {
     }
 }
 
-/// A filter for the reflectors of these cameras.
-pub(crate) fn filter(latency_s: f64, sides: Option<[Reflector; 2]>) -> PoseFilter {
+/// A filter for the reflectors of these cameras and gaits of at least this period \[s\].
+pub(crate) fn filter(latency_s: f64, period_s: f64, sides: Option<[Reflector; 2]>) -> PoseFilter {
     let reflectors = Reflectors {
         front: reflector("Front", REACH_M),
         back: reflector("Back", -REACH_M),
@@ -162,6 +162,7 @@ pub(crate) fn filter(latency_s: f64, sides: Option<[Reflector; 2]>) -> PoseFilte
     };
     let options = FilterOptions {
         latency_s,
+        period_s,
         ..FilterOptions::new(reflectors, 2.0 * REACH_M)
     };
     PoseFilter::new(options).unwrap()

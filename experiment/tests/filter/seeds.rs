@@ -11,6 +11,7 @@ use crate::swum::{RATE_HZ, SIDE_M, filmed, swum};
 pub(crate) fn filter(latency_s: f64) -> PoseFilter {
     cameras::filter(
         latency_s,
+        4.0,
         Some([reflector("Tip", SIDE_M), reflector("Tail", SIDE_M)]),
     )
 }

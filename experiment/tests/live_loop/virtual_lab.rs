@@ -22,6 +22,8 @@ pub(crate) const TANK: Tank = Tank {
 };
 pub(crate) const MARGIN: f64 = 0.01;
 const STEP_S: f64 = 0.01;
+/// Period of the quickest gait, the turn \[s\].
+const QUICKEST_S: f64 = 1.5;
 /// Share of a cycle at each end in which the joints stand, in the robot's tables.
 const STAND: f64 = 4.0 / 512.0;
 
@@ -384,28 +386,50 @@ fn exchange(lab: &mut Lab, controller: &mut Controller, planner: &Planner) {
     }
 }
 
+/// Result of a drive by frames.
+pub(crate) struct DriveByFrames {
+    pub(crate) controller: Controller,
+    pub(crate) counts: FilterCounts,
+    /// Poses of the filter that are off the truth by more than [`FAR_SIGMAS`] standard deviations.
+    pub(crate) far: Vec<FarPose>,
+    pub(crate) poses: usize,
+}
+
+/// Pose of the filter that is off the truth.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FarPose {
+    pub(crate) off_m: f64,
+    pub(crate) turned_rad: f64,
+}
+
+const FAR_SIGMAS: f64 = 5.0;
+
 /// Drives to a goal by frames of faulty cameras, which the pose filter turns into poses. The run begins once the filter knows the
-/// front. Returns the controller, and the counts of the filter.
+/// front.
 pub(crate) fn drive_by_frames(
     lab: &mut Lab,
     goal: &Goal,
     faults: Faults,
     seed: u64,
     until_s: f64,
-) -> (Controller, FilterCounts) {
+) -> DriveByFrames {
     let planner = planner();
     let mut controller = None;
+    let (mut far, mut poses, mut truth) = (Vec::new(), 0, Vec::new());
     let mut cameras = Cameras::new(faults, seed);
-    let mut filter = cameras::filter(faults.latency_s, None);
+    let mut filter = cameras::filter(faults.latency_s, QUICKEST_S, None);
     let mut under_way = VecDeque::new();
     while lab.now < until_s && !controller.as_ref().is_some_and(Controller::is_over) {
         lab.advance();
+        truth.push(lab.pose);
         if lab.truth.cut_s.is_none_or(|cut| lab.now < cut) {
             under_way.push_back(cameras.expose(lab.now, &lab.pose));
         }
         while let Some(frame) = under_way.pop_front_if(|frame| frame.received_s <= lab.now) {
             filter.push(&frame);
             if let (Some(pose), Some(controller)) = (filter.take_pose(lab.now), &mut controller) {
+                poses += 1;
+                far.extend(far_pose(&pose, &truth));
                 controller.pose(&pose);
             }
         }
@@ -422,8 +446,21 @@ pub(crate) fn drive_by_frames(
             exchange(lab, controller, &planner);
         }
     }
-    (
-        controller.expect("the front was never known"),
-        filter.counts(),
-    )
+    DriveByFrames {
+        controller: controller.expect("the front was never known"),
+        counts: filter.counts(),
+        far,
+        poses,
+    }
+}
+
+/// Compares a pose with the true ones, one every [`STEP_S`] from time zero. Returns `None` if it is near.
+fn far_pose(pose: &Pose, truth: &[swimmer_model::Pose<f64>]) -> Option<FarPose> {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a time of the run
+    let step = (pose.time_s / STEP_S).round().max(1.0) as usize - 1;
+    let there = truth.get(step.min(truth.len() - 1))?;
+    let off_m = (pose.x_m - there.x).hypot(pose.y_m - there.y);
+    let turned_rad = swimmer_model::wrapped_angle(pose.heading_rad - there.theta).abs();
+    let sigmas = (off_m / pose.sigma_position_m).max(turned_rad / pose.sigma_heading_rad);
+    (sigmas > FAR_SIGMAS).then_some(FarPose { off_m, turned_rad })
 }

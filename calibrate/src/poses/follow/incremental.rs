@@ -15,6 +15,9 @@ const RECENT: usize = 500;
 const LEARNED_EVERY: usize = 100;
 /// Largest number of candidates in a frame.
 const MOST: usize = 64;
+/// A reflector may move by the distance of both in this time \[s\], even if it was slower so far: a robot that rested may start while
+/// it is hidden.
+const SLOWEST_S: f64 = 1.0;
 /// Numbers of the candidates that are called front and back; others follow.
 const FRONT: usize = 0;
 const BACK: usize = 1;
@@ -84,7 +87,7 @@ impl PairFollower {
         (pairs.fronts, pairs.backs) = (vec![FRONT], vec![BACK]);
         (distance_m.is_finite() && distance_m > 0.0).then(|| Self {
             pairs,
-            walker: Walker::default(),
+            walker: Walker::at_speed(distance_m / SLOWEST_S),
             frames: 0,
             last_s: None,
             steps: VecDeque::new(),

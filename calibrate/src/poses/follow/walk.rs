@@ -80,6 +80,14 @@ pub(super) struct Walker {
 }
 
 impl Walker {
+    /// Expects reflectors that are at least so fast \[m/s\].
+    pub(super) fn at_speed(top_speed: f64) -> Self {
+        Self {
+            top_speed,
+            ..Self::default()
+        }
+    }
+
     /// Takes a row. Returns it if both reflectors are found, or the rows of a frame jump once they are believed.
     pub(super) fn step(
         &mut self,

@@ -21,6 +21,8 @@ use crate::recording::LiveAxes;
 const PATIENCE_S: f64 = 20.0;
 /// Frames that are read at once from a stream; the rest follows at the next beat.
 const MOST_AT_ONCE: usize = 512;
+/// Period of the quickest cycle that a robot plays, a turn of `optimize steer` \[s\].
+const QUICKEST_S: f64 = 1.5;
 /// Names of the reflectors unless others are given.
 const FRONT: &str = "Front";
 const BACK: &str = "Back";
@@ -126,7 +128,10 @@ impl CamerasOf<'_> {
             body: named.body.clone().map(RigidBody::named),
         };
         let may_take_a_body = named.front.is_none() && named.back.is_none() && named.body.is_none();
-        let options = FilterOptions::new(reflectors, middle_m);
+        let options = FilterOptions {
+            period_s: QUICKEST_S,
+            ..FilterOptions::new(reflectors, middle_m)
+        };
         let filter = filter(&options)?;
         let frames = if *self.source == SourceName::Twin {
             Frames::Tank(tank)
