@@ -1,7 +1,7 @@
 //! Gaits of a spec: read, optimised, scaled to neighbours, and predicted.
 
 use std::ffi::OsString;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use experiment::Course;
 use experiment::unattended::{
@@ -16,6 +16,7 @@ use swimmer_files::{AnyGait, Bounds, GaitFile, Objective, SwimmerFile};
 use swimmer_model::{Gait as _, Model, Pose};
 
 use crate::arguments::{load_gait, model};
+use crate::commands::optimize::steer::write_straight;
 use crate::commands::robot::table_of;
 use crate::failure::{Failure, Outcome};
 use crate::output::aside;
@@ -257,46 +258,25 @@ impl<'a> Maker<'a> {
     }
 }
 
-/// Gaits that drive to the start pose: those of a folder, or those of `optimize steer`.
+/// Writes the gaits that drive to the start pose: those of a folder, or those of `optimize steer`.
 ///
 /// # Errors
-/// As the search.
-pub(super) fn drive(maker: &Maker<'_>) -> Outcome {
+/// As the search and the disk.
+pub(super) fn drive(maker: &Maker<'_>, swimmer: &SwimmerFile) -> Outcome {
     let target = maker.draft.join(super::folder::DRIVE);
-    let from = if let Some(folder) = &maker.spec.drive {
-        maker.home.join(folder)
-    } else {
-        let steering = maker.draft.join(".steer");
-        let swimmer = maker.draft.join(super::folder::SWIMMER);
-        let words: [OsString; 8] = [
-            "optimize".into(),
-            "steer".into(),
-            "--playable".into(),
-            "--shape=0,0".into(),
-            "--swimmer".into(),
-            swimmer.into_os_string(),
-            "-o".into(),
-            steering.clone().into_os_string(),
-        ];
-        crate::run_captured(words).map_err(|refused| {
-            Failure::Tried(format!("gaits to drive with: {}", refused.reason))
-        })?;
-        steering
-    };
-    let made = |error: std::io::Error| {
+    std::fs::create_dir_all(&target).map_err(|error| {
         Failure::Tried(format!(
-            "cannot copy the gaits of {}: {error}",
-            from.display()
+            "cannot make the folder {}: {error}",
+            target.display()
         ))
+    })?;
+    let Some(folder) = &maker.spec.drive else {
+        return write_straight(swimmer, &target);
     };
-    std::fs::create_dir_all(&target).map_err(made)?;
     for name in ["forward", "left", "turn-left"] {
-        let file: PathBuf = from.join(format!("{name}.gait"));
+        let file = format!("{name}.gait");
         // Read first: an error names the place in the file.
-        GaitFile::load(&file)?.save(&target.join(format!("{name}.gait")))?;
-    }
-    if maker.spec.drive.is_none() {
-        let _ = std::fs::remove_dir_all(&from);
+        GaitFile::load(&maker.home.join(folder).join(&file))?.save(&target.join(&file))?;
     }
     Ok(())
 }

@@ -54,7 +54,7 @@ impl PlanSpec {
         swimmer.save(&draft.join(SWIMMER))?;
         swimmer_files::write_atomically(&draft.join(SPEC), text.as_bytes())?;
         let maker = Maker::new(&spec, home, &draft, &swimmer)?;
-        drive(&maker)?;
+        drive(&maker, &swimmer)?;
         let (gaits, left_out) = maker.all()?;
         let plan = spec.plan(&text, gaits, left_out);
         write_plan(&draft.join(PLAN), &plan)?;

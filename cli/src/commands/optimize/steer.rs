@@ -1,5 +1,7 @@
 //! `swimmer optimize steer`: the fastest gaits to steer by, from one common shape.
 
+use std::path::Path;
+
 use gait_optimizer::{Joined, SpeedProblem, SteerProblem, Steering, steer};
 use swimmer_files::SwimmerFile;
 use swimmer_model::Pose;
@@ -90,6 +92,19 @@ pub(crate) fn named(steering: &Steering) -> [(&'static str, &Joined, bool); 6] {
         ("turn-left", turn, false),
         ("turn-right", turn, true),
     ]
+}
+
+/// Searches the gaits that join at the straight shape, and writes them into a folder.
+///
+/// # Errors
+/// Those of the search and of the disk.
+pub(crate) fn write_straight(file: &SwimmerFile, folder: &Path) -> Outcome {
+    let steering = Steer::straight().find(file)?;
+    for (name, joined, backwards) in named(&steering) {
+        let gait = joined.gait_file(&file.name, backwards);
+        gait.save(&folder.join(format!("{name}.gait")))?;
+    }
+    Ok(())
 }
 
 impl Objective for Steer {

@@ -18,7 +18,7 @@ use super::outputs::print_refusal;
 use super::preflight::tank;
 use super::tracking::Tracked;
 use crate::arguments::{angle, length, load_swimmer};
-use crate::commands::optimize::steer::{Steer, named};
+use crate::commands::optimize::steer::{Steer, write_straight};
 use crate::commands::plan::{Target, family_in, joined, target};
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
@@ -245,11 +245,7 @@ fn family(folder: Option<&Path>, file: &SwimmerFile) -> Outcome<Family> {
         Some(folder) if is_filled(folder) => family_in(folder, steer.rates(file)?)?,
         Some(folder) => {
             let draft = NewFolder::start(folder)?;
-            let steering = steer.find(file)?;
-            for (name, joined, backwards) in named(&steering) {
-                let gait = joined.gait_file(&file.name, backwards);
-                gait.save(&draft.draft().join(format!("{name}.gait")))?;
-            }
+            write_straight(file, draft.draft())?;
             draft.publish()?;
             family_in(folder, steer.rates(file)?)?
         }
