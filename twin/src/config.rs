@@ -35,6 +35,8 @@ pub struct TwinConfig {
     pub shafts: [ServoMap; 2],
     /// A joint with a spring in place of its servo, with κ over one second; its pulses have no effect.
     pub passive: Option<PassiveJoint>,
+    /// Velocity of the fluid in the tank \[m/s\].
+    pub current: [f64; 2],
     /// Battery voltage, mV; the low-battery limit is 4400.
     pub battery_mv: u16,
     /// Cameras over the tank.
@@ -104,6 +106,7 @@ impl TwinConfig {
             servos: [settings; 2],
             shafts: [settings.into(); 2],
             passive: None,
+            current: [0.0; 2],
             battery_mv: 5_200,
             camera: CameraConfig::default(),
             flash: MemoryStorage::erased(),

@@ -32,6 +32,8 @@ pub struct Tank {
     pose: Pose<f64>,
     /// A joint that a spring holds in place of a servo, with κ over one second: k/μ.
     passive: Option<PassiveJoint>,
+    /// Velocity of the fluid \[m/s\].
+    current: Vector2<f64>,
 }
 
 impl Tank {
@@ -45,6 +47,7 @@ impl Tank {
             phi: Vector2::zeros(),
             pose,
             passive: None,
+            current: Vector2::zeros(),
         })
     }
 
@@ -67,8 +70,19 @@ impl Tank {
         }
     }
 
+    /// The same in a fluid that flows at this velocity \[m/s\], which carries the swimmer along.
+    #[must_use]
+    pub fn with_current(self, current: [f64; 2]) -> Self {
+        Self {
+            current: current.into(),
+            ..self
+        }
+    }
+
     /// Follows the servos to `servos` \[rad\] in `seconds`. A passive joint turns by its spring and the drag; its servo is ignored.
     pub fn follow(&mut self, servos: Vector2<f64>, seconds: f64) {
+        self.pose.x += self.current.x * seconds;
+        self.pose.y += self.current.y * seconds;
         let Some(passive) = self.passive else {
             self.move_joints(servos);
             return;
@@ -211,6 +225,22 @@ mod tests {
         let share = tank.phi().y / 1e-3;
         assert!((share - (-1.5_f64).exp()).abs() < 1e-6, "{share}");
         assert!(tank.phi().x.abs() < 1e-15);
+    }
+
+    /// A current adds its displacement, whatever the joints do.
+    #[test]
+    fn a_current_carries_the_swimmer() {
+        let start = Pose::new(0.1, 0.0, 0.5);
+        let still = Tank::new(&Swimmer::robot(), start).unwrap();
+        let (mut flowing, mut still) = (still.clone().with_current([1e-3, -2e-3]), still);
+        for (one, two) in [(0.4, 0.0), (0.4, 0.4), (0.0, 0.4), (0.0, 0.0), (0.0, 0.0)] {
+            let servos = Vector2::new(one, two);
+            flowing.follow(servos, 2.0);
+            still.follow(servos, 2.0);
+        }
+        let off = flowing.pose().position() - still.pose().position();
+        assert!((off - Vector2::new(0.01, -0.02)).norm() < 1e-12, "{off}");
+        assert!((flowing.pose().theta - still.pose().theta).abs() < 1e-12);
     }
 
     #[test]

@@ -99,7 +99,7 @@ impl World {
         rng.set_stream(3);
         let mut draw = |largest: f64| rng.random_range(-largest..largest);
         let pose = Pose::new(draw(0.2), draw(0.2), draw(std::f64::consts::PI));
-        let tank = Tank::new(&config.swimmer, pose)?;
+        let tank = Tank::new(&config.swimmer, pose)?.with_current(config.current);
         let tank = match config.passive {
             Some(passive) => tank.with_spring(passive),
             None => tank,

@@ -25,6 +25,9 @@ use crate::new_file::may_be_written;
 use crate::output::{Output, aside};
 use crate::virtual_robot::{Carrier, EmulatedBoard};
 
+/// Fastest current of the fluid \[m/s\].
+const FASTEST_CURRENT: f64 = 1.0;
+
 /// Be a robot in a virtual tank, in real time, until Ctrl-C
 ///
 /// The swimmer file is the truth that only the tank knows. Servos are those of the file, or have a rate limit of
@@ -66,6 +69,9 @@ pub(crate) struct Twin {
     /// Half width of the servos' dead band, in place of the swimmer file's
     #[arg(long, value_name = "ANGLE", value_parser = dead_band)]
     dead_band: Option<f64>,
+    /// Velocity of the fluid along the tank and across it, m/s, which the robot does not know
+    #[arg(long, value_name = "X,Y", value_parser = current, allow_hyphen_values = true)]
+    current: Option<Current>,
     /// Take the port for a radio: whoever speaks there need not be at the robot. Else it is its USB cable
     #[arg(long)]
     radio: bool,
@@ -77,6 +83,24 @@ pub(crate) struct Twin {
     robot: Carrier,
     #[command(flatten)]
     board: EmulatedBoard,
+}
+
+/// Velocity of the fluid \[m/s\].
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Current {
+    x: f64,
+    y: f64,
+}
+
+fn current(text: &str) -> Result<Current, String> {
+    let part = |text: &str| text.trim().parse::<f64>().ok();
+    let parts = text.split_once(',').map(|(x, y)| (part(x), part(y)));
+    match parts {
+        Some((Some(x), Some(y))) if x.hypot(y) <= FASTEST_CURRENT => Ok(Current { x, y }),
+        _ => Err(format!(
+            "`{text}` is no velocity of at most {FASTEST_CURRENT} m/s: write X,Y, as 0.0002,-0.0001"
+        )),
+    }
 }
 
 #[derive(Debug, Serialize)]
@@ -114,6 +138,9 @@ impl Twin {
         }
         if let Some(dead_band) = self.dead_band {
             config.plant.dead_band = dead_band.abs();
+        }
+        if let Some(Current { x, y }) = self.current {
+            config.current = [x, y];
         }
         if self.radio {
             config.transport = Transport::Uart;

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use crate::binary::{Ran, TwinProcess, command, interrupt, number, swimmer_in, typed};
 
 /// Gaits that join at the straight shape.
-fn gaits() -> String {
+pub(crate) fn gaits() -> String {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../experiment/tests/straight");
     folder.display().to_string()
 }
@@ -54,13 +54,37 @@ fn a_pose_is_reached() {
     assert!(rows.count() >= 3, "{ran}");
 }
 
+/// Four way-points, each reached within the tolerance.
+#[test]
+fn a_square_is_driven() {
+    let folder = tempfile::tempdir().unwrap();
+    let square =
+        "--via -0.05,-0.05,0deg --via 0.05,-0.05,0deg --via 0.05,0.05,0deg --to -0.05,0.05,0deg";
+    let ran = go(folder.path(), &format!("{square} --tank 1.2x1.2 --json")).with_status(0);
+    let document = ran.json();
+    assert_eq!(document["reached"], true, "{document:#}");
+    // The rows state the pose at each rest.
+    for [x, y] in [[-0.05, -0.05], [0.05, -0.05], [0.05, 0.05], [-0.05, 0.05]] {
+        let off = ran.stderr.lines().filter_map(|line| {
+            let (_, pose) = line.split_once(" cycles at (")?;
+            let (position, _) = pose.split_once(") m")?;
+            let (here_x, here_y) = position.split_once(", ")?;
+            let [here_x, here_y]: [f64; 2] = [here_x, here_y].map(|part| part.parse().unwrap());
+            Some((here_x - x).hypot(here_y - y))
+        });
+        let nearest = off.fold(f64::INFINITY, f64::min);
+        assert!(nearest <= 3e-3, "corner ({x}, {y}): {nearest} m\n{ran}");
+    }
+}
+
 #[test]
 fn a_heading_is_held() {
     let folder = tempfile::tempdir().unwrap();
-    let document = go(folder.path(), "--hold 0deg --cycles 3 --tank 2x2 --json")
+    let document = go(folder.path(), "--hold 0deg --cycles 20 --tank 2x2 --json")
         .with_status(0)
         .json();
     assert!(document["off_m"].is_null() && document["reached"] == true);
+    assert!(number(&document, "cycles") >= 20.0, "{document:#}");
     assert!(
         number(&document, "held_within_rad") < 2_f64.to_radians(),
         "{document:#}"

@@ -6,6 +6,8 @@ mod binary;
 mod certify;
 mod contract_keys;
 mod demo;
+#[cfg(target_os = "linux")]
+mod departures;
 mod emulated;
 mod experiment;
 mod figures;
