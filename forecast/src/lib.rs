@@ -48,7 +48,10 @@ pub use losses::{
     thickness,
 };
 pub use net_motion::NetMotion;
-pub use plan::{Family, Kind, Member, Plan, PlanError, PlanRequest, Planner, Scaled, Step, plan};
+pub use plan::{
+    Family, Kind, Member, Plan, PlanError, PlanRequest, Planner, Scaled, Step, Watch, check_ends,
+    plan,
+};
 pub use playlist::{PlaylistTable, Repeated};
 pub use reach::{Reach, reach};
 pub use table::table;

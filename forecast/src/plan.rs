@@ -11,6 +11,7 @@
 //! therefore played with the robot's own arithmetic, and the aim is shifted by the miss until the played chain meets the target.
 
 mod aim;
+mod budget;
 mod legs;
 mod member;
 mod planner;
@@ -27,10 +28,12 @@ use crate::path::Polyline;
 use crate::playlist::{Repeated, leads_to};
 use crate::tank::Tank;
 use aim::Hit;
+use budget::Budget;
 use member::Nets;
-use search::{EFFORTS, SearchCounts, quickest};
+use search::{EFFORTS, PlanSearch, SearchCounts, ends};
 use walls::{Sweeps, SweptAreas, Walls};
 
+pub use budget::Watch;
 pub use member::{Kind, Member, Scaled};
 pub use planner::Planner;
 
@@ -136,6 +139,17 @@ pub enum PlanError {
         /// \[m\]
         margin: f64,
     },
+    /// The swimmer fits into the tank at the target in no heading.
+    #[error(
+        "the swimmer does not fit into the tank at the target: at ({:.4}, {:.4}) m it comes within {margin} m of a wall in every \
+         heading; name a target farther from the walls, or a larger --tank", to[0], to[1]
+    )]
+    TargetOutside {
+        /// x, y \[m\].
+        to: [f64; 2],
+        /// \[m\]
+        margin: f64,
+    },
     /// The robot would not play it.
     #[error("the robot would refuse the {gait} gait of the plan: {reason}")]
     Refused {
@@ -217,7 +231,7 @@ impl Family {
     }
 }
 
-/// Searches for the quickest plan.
+/// Searches for the quickest plan, with bounded work. `watch` receives the fraction of that work that is done.
 ///
 /// # Errors
 /// [`PlanError`].
@@ -234,27 +248,40 @@ impl Family {
 /// let to = Vector2::new(0.2, 0.1);
 /// let servos = Servos::on_the_robot(ServoFile::default());
 /// let request = PlanRequest { from: Pose::identity(), to, heading: None, tank: None, margin: 0.005, servos };
-/// let refused = plan(&model, &Family { gaits, mirrored: false }, &request).unwrap_err();
+/// let refused = plan(&model, &Family { gaits, mirrored: false }, &request, &|_| ()).unwrap_err();
 /// assert!(matches!(refused, PlanError::Apart { apart } if (apart - 0.4).abs() < 1e-12));
 /// ```
-pub fn plan(model: &Model<f64>, family: &Family, request: &PlanRequest) -> Result<Plan, PlanError> {
+pub fn plan(
+    model: &Model<f64>,
+    family: &Family,
+    request: &PlanRequest,
+    watch: Watch<'_>,
+) -> Result<Plan, PlanError> {
     family.check_joined()?;
+    check_ends(model, request)?;
     let walls = Walls::new(model, request.tank, request.margin);
-    check_ends(model, &walls, family, request)?;
+    check_bent_ends(model, &walls, family, request)?;
     let nets = Nets::new(model, family, &request.servos).map_err(|error| PlanError::Refused {
         gait: "fastest",
         reason: error.to_string(),
     })?;
     // Next to a wall the swimmer may fit only if it bends away from it.
     let images = [(family.clone(), &nets), (family.mirror(), &nets.mirror())];
-    let mut counts = SearchCounts::default();
+    let (mut counts, mut budget) = (SearchCounts::default(), Budget::new(watch));
     for effort in &EFFORTS {
         let spared_walls = Walls::new(model, request.tank, request.margin + effort.spare);
         let mut found = None;
         for (family, nets) in &images {
             let swept = SweptAreas::default();
-            let sweeps = Sweeps::new(&spared_walls, nets, family, &swept);
-            found = quickest(model, request, &walls, &sweeps, effort, found, &mut counts);
+            let search = PlanSearch {
+                model,
+                request,
+                walls: &walls,
+                sweeps: Sweeps::new(&spared_walls, nets, family, &swept),
+                effort,
+            };
+            budget.start(effort.budget);
+            found = search.quickest(found, &mut counts, &mut budget);
         }
         if let Some(found) = found {
             return Ok(Plan {
@@ -270,8 +297,37 @@ pub fn plan(model: &Model<f64>, family: &Family, request: &PlanRequest) -> Resul
     }))
 }
 
-/// Checks that the swimmer fits at the start and, if its heading is given, at the target: straight, and bent to at least one side.
-fn check_ends(
+/// Refuses a start or a target at which the straight swimmer does not fit into the tank. This check needs no gaits, so it can
+/// precede their search.
+///
+/// # Errors
+/// [`PlanError::Outside`], [`PlanError::TargetOutside`].
+pub fn check_ends(model: &Model<f64>, request: &PlanRequest) -> Result<(), PlanError> {
+    let walls = Walls::new(model, request.tank, request.margin);
+    let fits = |pose: &Pose<f64>| walls.fits(pose, &Vector2::zeros());
+    let outside = |what, pose: &Pose<f64>| PlanError::Outside {
+        what,
+        pose: [pose.x, pose.y, pose.theta],
+        margin: request.margin,
+    };
+    if !fits(&request.from) {
+        return Err(outside("at the start", &request.from));
+    }
+    let targets = ends(request);
+    if targets.iter().any(fits) {
+        return Ok(());
+    }
+    Err(match (request.heading, &targets[..]) {
+        (Some(_), [target]) => outside("at the target", target),
+        _ => PlanError::TargetOutside {
+            to: request.to.into(),
+            margin: request.margin,
+        },
+    })
+}
+
+/// Refuses a start or, if its heading is given, a target at which the swimmer can be bent to neither side.
+fn check_bent_ends(
     model: &Model<f64>,
     walls: &Walls<'_>,
     family: &Family,
@@ -280,25 +336,15 @@ fn check_ends(
     let to = request
         .heading
         .map(|heading| Pose::new(request.to.x, request.to.y, heading));
-    let shape = family.shape();
     for (what, pose) in [("at the start", Some(request.from)), ("at the target", to)] {
         let Some(pose) = pose else { continue };
-        let coordinates = [pose.x, pose.y, pose.theta];
-        let margin = request.margin;
-        if !walls.fits(&pose, &Vector2::zeros()) {
-            return Err(PlanError::Outside {
-                what,
-                pose: coordinates,
-                margin,
-            });
-        }
         let bent = |family: &Family| walls.fits(&(pose * family.way_in(model)), &family.shape());
         if !bent(family) && !bent(&family.mirror()) {
             return Err(PlanError::Bent {
                 what,
-                pose: coordinates,
-                shape: shape.into(),
-                margin,
+                pose: [pose.x, pose.y, pose.theta],
+                shape: family.shape().into(),
+                margin: request.margin,
             });
         }
     }

@@ -3,7 +3,7 @@
 
 use std::sync::OnceLock;
 
-use forecast::{Family, PlanError, PlanRequest, Servos, Tank, plan};
+use forecast::{Family, PlanError, PlanRequest, Servos, Tank, check_ends, plan};
 use gait_optimizer::{Bounds, SpeedProblem, SteerProblem, steer};
 use nalgebra::{Vector2, Vector3};
 use swimmer_files::{AnyGait, ServoFile};
@@ -120,10 +120,10 @@ fn reached_all(targets: u32, seed: u64) {
             margin: MARGIN,
             servos: servos(),
         };
-        let found = match plan(model, bent, &request) {
+        let found = match plan(model, bent, &request, &|_| ()) {
             Err(PlanError::Bent { .. } | PlanError::NoWay { .. }) => {
                 unbent += 1;
-                plan(model, straight, &request)
+                plan(model, straight, &request, &|_| ())
             }
             found => found,
         };
@@ -177,9 +177,9 @@ fn reached_straight(to: [f64; 2], heading: f64) {
         margin: MARGIN,
         servos: servos(),
     };
-    let error = plan(model, bent, &request).unwrap_err();
+    let error = plan(model, bent, &request, &|_| ()).unwrap_err();
     assert!(matches!(error, PlanError::Bent { .. }), "{error}");
-    let found = plan(model, straight, &request).unwrap();
+    let found = plan(model, straight, &request, &|_| ()).unwrap();
     let pose = swum(model, Vector3::zeros(), found.way.vertices());
     assert!((Vector2::new(pose.x, pose.y) - request.to).norm() < 5e-4);
     assert!((pose.z - heading).abs() < 5e-3);
@@ -210,7 +210,13 @@ fn a_target_at_a_wall_is_reached_by_slightly_other_gaits() {
         margin: MARGIN,
         servos: servos(),
     };
-    let found = plan(model, &joined_at([0.0; 2], CLEARANCE + 6e-5), &request).unwrap();
+    let found = plan(
+        model,
+        &joined_at([0.0; 2], CLEARANCE + 6e-5),
+        &request,
+        &|_| (),
+    )
+    .unwrap();
     let pose = swum(model, Vector3::zeros(), found.way.vertices());
     assert!((Vector2::new(pose.x, pose.y) - request.to).norm() < 5e-4);
     assert!((pose.z - heading).abs() < 5e-3);
@@ -227,9 +233,65 @@ fn a_target_outside_is_refused() {
         margin: MARGIN,
         servos: servos(),
     };
-    let error = plan(model, family, &request).unwrap_err();
+    let error = plan(model, family, &request, &|_| ()).unwrap_err();
     assert!(
-        matches!(error, PlanError::NoWay { .. } | PlanError::Outside { .. }),
+        matches!(error, PlanError::TargetOutside { to: [0.6, 0.0], .. }),
         "{error}"
     );
+    // The refusal needs no gaits.
+    assert_eq!(check_ends(model, &request), Err(error));
+}
+
+/// CPU time of this thread \[s\], which other programs on the machine do not lengthen. Returns `None` if the system does not count it.
+fn cpu_seconds() -> Option<f64> {
+    let counted = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    let nanoseconds: f64 = counted.split_whitespace().next()?.parse().ok()?;
+    Some(nanoseconds * 1e-9)
+}
+
+/// Prints the time and the share of the bounded work of each of 30 targets. Nothing is asserted.
+#[test]
+#[ignore = "soak: timing"]
+fn how_long_it_takes() {
+    let (model, [bent, straight]) = robot();
+    let mut random = Random(7);
+    let mut all = Vec::new();
+    while all.len() < 30 {
+        let to = Vector2::new(random.next() - 0.5, 0.6 * (random.next() - 0.5));
+        let heading = std::f64::consts::TAU * (random.next() - 0.5);
+        let request = PlanRequest {
+            from: Pose::identity(),
+            to,
+            heading: (all.len() % 3 > 0).then_some(heading),
+            tank: Some(TANK),
+            margin: MARGIN,
+            servos: servos(),
+        };
+        if check_ends(model, &request).is_err() {
+            continue;
+        }
+        let share = std::cell::Cell::new(0.0);
+        let begun = (cpu_seconds(), std::time::Instant::now());
+        let mut found = plan(model, bent, &request, &|done| share.set(done));
+        let mut shares = vec![share.get()];
+        if matches!(found, Err(PlanError::Bent { .. } | PlanError::NoWay { .. })) {
+            share.set(0.0);
+            found = plan(model, straight, &request, &|done| share.set(done));
+            shares.push(share.get());
+        }
+        let seconds = match (begun.0, cpu_seconds()) {
+            (Some(before), Some(after)) => after - before,
+            _ => begun.1.elapsed().as_secs_f64(),
+        };
+        println!(
+            "{seconds:.2} s, work {shares:.3?}: ({:.3}, {:.3}), {:?}: {:?}",
+            to.x,
+            to.y,
+            request.heading,
+            found.map(|found| (found.duration, found.steps.len()))
+        );
+        all.push(seconds);
+    }
+    all.sort_by(f64::total_cmp);
+    println!("median {:.2} s, longest {:.2} s", all[15], all[29]);
 }

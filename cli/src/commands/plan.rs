@@ -5,7 +5,7 @@ mod playlist;
 
 use std::path::{Path, PathBuf};
 
-use forecast::{Family, PlanError, PlanRequest, Servos, Tank, plan};
+use forecast::{Family, PlanError, PlanRequest, Servos, Tank, check_ends, plan};
 use swimmer_files::{AnyGait, GaitFile, SwimmerFile};
 use swimmer_model::{Gait as _, Link, Pose};
 
@@ -17,6 +17,7 @@ use crate::arguments::{angle, length, load_swimmer};
 use crate::failure::{Failure, Outcome};
 use crate::new_file::may_be_written;
 use crate::output::Output;
+use crate::progress::Progress;
 
 /// String the gaits of `optimize steer` together so that the swimmer comes to a target
 ///
@@ -103,7 +104,6 @@ impl Plan {
                 file.name
             )));
         }
-        let mut family = self.family(&file)?;
         let request = PlanRequest {
             from: Pose::new(self.from.x, self.from.y, self.from.heading.unwrap_or(0.0)),
             to: nalgebra::Vector2::new(self.to.x, self.to.y),
@@ -112,14 +112,20 @@ impl Plan {
             margin: self.margin,
             servos: Servos::on_the_robot(file.servo.unwrap_or_default()),
         };
-        let mut found = plan(&model, &family, &request);
+        check_ends(&model, &request).map_err(|error| Failure::tried(&error))?;
+        let mut family = self.family(&file)?;
+        let plan = |family: &Family| {
+            let progress = Progress::with_share("searching for a plan");
+            plan(&model, family, &request, &|share| progress.at_share(share))
+        };
+        let mut found = plan(&family);
         let no_room = matches!(found, Err(PlanError::Bent { .. } | PlanError::NoWay { .. }));
         if no_room && self.gaits.is_none() && self.steer.shape.is_none() {
-            // Beside a wall the straight swimmer may fit where the bent one does not.
+            // Next to a wall the straight swimmer may fit where the bent one does not.
             let mut straight = self.steer.clone();
             straight.shape = Some([0.0; 2]);
             family = joined(&straight, &file)?;
-            found = plan(&model, &family, &request);
+            found = plan(&family);
         }
         let found = found.map_err(|error| Failure::tried(&error))?;
         let off = |share: f64| -> Outcome<[f64; 2]> {

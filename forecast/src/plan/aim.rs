@@ -2,6 +2,7 @@
 
 use swimmer_model::{Model, Pose};
 
+use super::budget::Budget;
 use super::legs::settled;
 use super::member::Nets;
 use super::{Family, PlanError, PlanRequest, Step, distance};
@@ -50,6 +51,7 @@ impl Aim<'_> {
         &self,
         begun: &Pose<f64>,
         mut chain: Chain<'_>,
+        budget: &mut Budget<'_>,
     ) -> Result<Option<Hit>, PlanError> {
         let [out, legs, back] =
             [chain.out, &chain.legs, &chain.back].map(|steps| self.nets.after(steps));
@@ -64,6 +66,7 @@ impl Aim<'_> {
         let mut best: Option<Hit> = None;
         for _ in 0..SHOTS {
             let shot = self.play(&target, chain.steps())?;
+            budget.spend(shot.way.vertices().len());
             // Distance of the played end from the end at which the model was aimed.
             let missed_by = aimed_at.inverse() * shot.reached;
             aimed_at = target * missed_by.inverse();

@@ -103,10 +103,10 @@ fn planned<'a>(
     [bent, straight]: &'a [Family; 2],
     request: &PlanRequest,
 ) -> Result<(&'a Family, forecast::Plan), PlanError> {
-    match plan(model, bent, request) {
+    match plan(model, bent, request, &|_| ()) {
         Ok(found) => Ok((bent, found)),
         Err(PlanError::Bent { .. } | PlanError::NoWay { .. }) => {
-            plan(model, straight, request).map(|found| (straight, found))
+            plan(model, straight, request, &|_| ()).map(|found| (straight, found))
         }
         Err(error) => Err(error),
     }
@@ -342,7 +342,13 @@ fn reached_all(targets: usize, seed: u64) {
 #[test]
 fn a_bad_link_changes_nothing() {
     let (model, [family, _]) = robot();
-    let found = plan(model, family, &request(Vector2::new(0.2, 0.1), 1.5)).unwrap();
+    let found = plan(
+        model,
+        family,
+        &request(Vector2::new(0.2, 0.1), 1.5),
+        &|_| (),
+    )
+    .unwrap();
     let tables = tables_of(family, &found);
     let (clean, _) = swum_by(*model.swimmer(), &tables, 3);
     let faults = "drop=2%,flip=0.2%,delay=20";
