@@ -88,7 +88,7 @@ impl Clearance {
         }
         if self.links.overlap(phi) > 0.0 {
             // Crossing: out by the tip that has the shorter way.
-            let [front, back] = self.heights(phi);
+            let [front, back] = [0, 1].map(|tip| self.height(phi, tip));
             return Piece::Tip(usize::from(front <= back));
         }
         let [front, back] = self.tip_pieces(phi);
@@ -103,7 +103,7 @@ impl Clearance {
     /// or cross. Continuous within |φᵢ| < π.
     pub(crate) fn margin(&self, phi: &Vector2<f64>) -> f64 {
         let apart = if self.links.overlap(phi) > 0.0 {
-            let [front, back] = self.heights(phi);
+            let [front, back] = [0, 1].map(|tip| self.height(phi, tip));
             front.max(back)
         } else {
             let [front, back] = self.tip_pieces(phi).map(|piece| self.reach(piece, phi));
@@ -115,8 +115,8 @@ impl Clearance {
     /// The margin with its derivatives, from the piece that decides.
     pub(crate) fn deciding_level(&self, phi: &Vector2<f64>) -> Level {
         let mut level = self.level(self.piece(phi), phi);
-        let crosses = self.links.overlap(phi) > 0.0;
-        if self.held.is_none() && !crosses && level.value + self.distance < 0.0 {
+        let crosses = || self.links.overlap(phi) > 0.0;
+        if self.held.is_none() && level.value + self.distance < 0.0 && !crosses() {
             // Not crossing, and beyond the other link's line: the distance to it grows on the other side.
             level = Level {
                 value: -level.value - 2.0 * self.distance,
@@ -205,9 +205,10 @@ impl Clearance {
         [self.links.front, self.links.back][link]
     }
 
-    /// Each tip's height over the line of the other link; positive on the side of its own joint.
-    fn heights(&self, phi: &Vector2<f64>) -> [f64; 2] {
-        [0, 1].map(|tip| self.height_level(phi, tip).value)
+    /// Height of a tip over the line of the other link; positive on the side of its own joint.
+    fn height(&self, phi: &Vector2<f64>, tip: usize) -> f64 {
+        let [both, alone] = [self.side(tip), self.links.middle].map(|length| zone(phi) * length);
+        both * phi.sum().sin() + alone * phi[1 - tip].sin()
     }
 
     /// Distance of the foot of a tip on the line of the other link from that link's joint.
@@ -232,7 +233,7 @@ impl Clearance {
     /// The distance that a piece stands for.
     fn reach(&self, piece: Piece, phi: &Vector2<f64>) -> f64 {
         match piece {
-            Piece::Tip(tip) => self.heights(phi)[tip].abs(),
+            Piece::Tip(tip) => self.height(phi, tip).abs(),
             Piece::Tips => self.tips(phi),
             Piece::TipToJoint(tip) => self.tip_to_joint(phi, tip),
         }
@@ -249,7 +250,7 @@ impl Clearance {
         (self.links.middle + self.side(tip) * cos).hypot(self.side(tip) * sin)
     }
 
-    /// The height of a tip.
+    /// The height of a tip with its derivatives.
     fn height_level(&self, phi: &Vector2<f64>, tip: usize) -> Level {
         let other = 1 - tip;
         let (sin12, cos12) = phi.sum().sin_cos();
@@ -260,7 +261,7 @@ impl Clearance {
         let mut hessian = Matrix2::repeat(-both * sin12);
         hessian[(other, other)] -= alone * sin;
         Level {
-            value: both * sin12 + alone * sin,
+            value: self.height(phi, tip),
             gradient,
             hessian,
         }

@@ -299,7 +299,8 @@ pub(crate) fn hessian(
             // The displacement over this arc rotates with the heading before it.
             let turned = pulls.pull.dot(&perpendicular(&moved)) - beyond * theta;
             let column = index(p);
-            for (row, heading) in headings.iter().enumerate() {
+            let moving = headings.iter().enumerate();
+            for (row, heading) in moving.filter(|(_, heading)| **heading != 0.0) {
                 hessian[(row, column)] += heading * turned;
                 hessian[(column, row)] += heading * turned;
             }

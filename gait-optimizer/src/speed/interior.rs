@@ -104,6 +104,23 @@ struct Iterate {
     damping: f64,
     /// Price of the equalities in the line search.
     penalty: f64,
+    merit: Merit,
+}
+
+/// Terms of the merit function of the line search, which adds them with the barrier parameter and the penalty.
+struct Merit {
+    /// ln T − ln |d|.
+    objective: f64,
+    /// Sum of the logarithms of the margins.
+    logs: f64,
+    /// Sum of the magnitudes of the equalities' residuals.
+    missed: f64,
+}
+
+impl Merit {
+    fn value(&self, barrier: f64, penalty: f64) -> f64 {
+        self.objective - barrier * self.logs + penalty * self.missed
+    }
 }
 
 /// All that is worked out at one iterate.
@@ -137,8 +154,8 @@ impl<'a> Method<'a> {
         }
     }
 
-    fn inequalities(&self, z: &DVector<f64>) -> Vec<Inequality> {
-        limits::inequalities(self.setting, &self.layout, z)
+    fn margins(&self, z: &DVector<f64>) -> impl Iterator<Item = f64> {
+        limits::margins(self.setting, &self.layout, z)
     }
 
     /// Scale of the second derivatives of the objective, a logarithm, over angles.
@@ -152,26 +169,29 @@ impl<'a> Method<'a> {
         Some([off.x, off.y])
     }
 
-    fn merit(&self, z: &DVector<f64>, barrier: f64, penalty: f64) -> f64 {
-        let inequalities = self.inequalities(z);
-        if !inequalities.iter().all(|one| one.value > 0.0) {
-            return f64::INFINITY;
+    /// Returns `None` if a margin is not positive.
+    fn merit(&self, z: &DVector<f64>) -> Option<Merit> {
+        let mut logs = 0.0;
+        for margin in self.margins(z) {
+            if margin.is_nan() || margin <= 0.0 {
+                return None;
+            }
+            logs += margin.ln();
         }
-        let logs: f64 = inequalities.iter().map(|one| one.value.ln()).sum();
         let (_, net) = self.layout.net(self.setting.model, &self.rule, z);
         let period = self.layout.period(z);
         let off = self.setting.residuals(&net, period);
         let anchored = self.anchored(z).into_iter().flatten();
-        let missed: f64 = off.into_iter().chain(anchored).map(f64::abs).sum();
-        period.ln() - self.setting.measure(&net).ln() - barrier * logs + penalty * missed
+        Some(Merit {
+            objective: period.ln() - self.setting.measure(&net).ln(),
+            logs,
+            missed: off.into_iter().chain(anchored).map(f64::abs).sum(),
+        })
     }
 
     fn solve(self, z: DVector<f64>, [first, last]: [f64; 2]) -> Option<Polygon> {
-        let inequalities = self.inequalities(&z);
-        if !inequalities.iter().all(|one| one.value > 0.0) {
-            return None;
-        }
-        let pushes = inequalities.iter().map(|one| first / one.value);
+        let merit = self.merit(&z)?;
+        let pushes = self.margins(&z).map(|margin| first / margin);
         let anchored = if self.setting.asked.anchor.is_some() {
             2
         } else {
@@ -184,6 +204,7 @@ impl<'a> Method<'a> {
             barrier: first,
             damping: 0.0,
             penalty: 1.0,
+            merit,
         };
         for _ in 0..MOST_STEPS {
             let evaluate = self.evaluate(&here)?;
@@ -236,7 +257,7 @@ impl<'a> Method<'a> {
             }));
         }
         Some(Evaluation {
-            inequalities: self.inequalities(z),
+            inequalities: limits::inequalities(self.setting, layout, z),
             jets,
             net,
             values,
@@ -331,19 +352,21 @@ impl<'a> Method<'a> {
 
     /// Goes as far along a direction as the merit does not rise; whether it moved.
     fn move_along(&self, here: &mut Iterate, direction: &Direction) -> bool {
-        let merit = self.merit(&here.z, here.barrier, here.penalty);
+        let merit = here.merit.value(here.barrier, here.penalty);
         for length in damped(direction.longest).take(25) {
             let there = &here.z + &direction.z * length;
-            let after = self.merit(&there, here.barrier, here.penalty);
-            if after <= merit + 1e-10 * merit.abs().max(1.0) {
+            let Some(after) = self.merit(&there) else {
+                continue;
+            };
+            if after.value(here.barrier, here.penalty) <= merit + 1e-10 * merit.abs().max(1.0) {
                 here.z = there;
+                here.merit = after;
                 here.y += &direction.y * length;
-                let now = self.inequalities(&here.z);
                 let steps = here.pushes.iter_mut().zip(&direction.pushes);
-                for ((push, d), one) in steps.zip(&now) {
+                for ((push, d), margin) in steps.zip(self.margins(&here.z)) {
                     *push += direction.dual_longest * d;
                     // Keep the product near the barrier.
-                    let central = here.barrier / one.value;
+                    let central = here.barrier / margin;
                     *push = push.clamp(1e-8 * central, 1e8 * central);
                 }
                 return true;

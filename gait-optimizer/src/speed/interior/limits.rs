@@ -32,6 +32,32 @@ impl Inequality {
     }
 }
 
+/// Joint and sign of the four rates of a side.
+const RATES: [(usize, f64); 4] = [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)];
+
+/// Margins of the four rates of a side.
+fn rate_margins(setting: &Setting, layout: &Layout, z: &DVector<f64>, side: usize) -> [f64; 4] {
+    let (from, to) = (layout.corner_index(side), layout.corner_index(side + 1));
+    let time = z[layout.time_index(side)];
+    RATES
+        .map(|(joint, sign)| setting.rates[joint] * time - sign * (z[to + joint] - z[from + joint]))
+}
+
+/// Values of all inequalities, in the order of [`inequalities`], without derivatives.
+pub(super) fn margins(
+    setting: &Setting,
+    layout: &Layout,
+    z: &DVector<f64>,
+) -> impl Iterator<Item = f64> {
+    let rates = (0..layout.arcs()).flat_map(move |side| rate_margins(setting, layout, z, side));
+    let bounds = (0..layout.arcs()).flat_map(move |corner| {
+        let phi = layout.corner(z, corner);
+        let bounds = setting.region.bounds();
+        bounds.map(move |bound| bound.margin(&phi))
+    });
+    rates.chain(bounds)
+}
+
 /// All inequalities of a polygon: four rates of each side, then the bounds of each corner.
 pub(super) fn inequalities(
     setting: &Setting,
@@ -42,25 +68,20 @@ pub(super) fn inequalities(
     for side in 0..layout.arcs() {
         let (from, to) = (layout.corner_index(side), layout.corner_index(side + 1));
         let time = layout.time_index(side);
-        for joint in 0..2 {
+        let margins = rate_margins(setting, layout, z, side);
+        for ((joint, sign), margin) in RATES.into_iter().zip(margins) {
             let limit = setting.rates[joint];
-            let way = z[to + joint] - z[from + joint];
-            for sign in [1.0, -1.0] {
-                let slope = [(time, limit), (to + joint, -sign), (from + joint, sign)];
-                all.push(Inequality::new(limit * z[time] - sign * way, &slope, None));
-            }
+            let slope = [(time, limit), (to + joint, -sign), (from + joint, sign)];
+            all.push(Inequality::new(margin, &slope, None));
         }
     }
     for corner in 0..layout.arcs() {
         let phi = layout.corner(z, corner);
         let at = layout.corner_index(corner);
         for bound in setting.region.bounds() {
-            let gradient = bound.gradient(&phi);
-            let curved = match bound {
-                Bound::Clearance(clearance) => Some(clearance.deciding_level(&phi).hessian),
-                Bound::Straight(_) => None,
-            };
-            let slope = [(at, gradient.x), (at + 1, gradient.y)];
+            let level = bound.level(&phi);
+            let curved = matches!(bound, Bound::Clearance(_)).then_some(level.hessian);
+            let slope = [(at, level.gradient.x), (at + 1, level.gradient.y)];
             all.push(Inequality::new(bound.margin(&phi), &slope, curved));
         }
     }
