@@ -35,6 +35,7 @@ mod tracks_poses;
 mod tracks_rates;
 mod tracks_tables;
 mod twin_campaigns;
+mod unequal;
 mod unusual_campaigns;
 mod walls;
 mod writers;

@@ -84,6 +84,7 @@ fn the_largest_region_by_brute_force() {
         (Swimmer::robot(), Bounds::within(2.8)),
         (Swimmer::robot(), Bounds::within(2.8).apart(0.0)),
         (uneven(), Bounds::within(2.5)),
+        (Swimmer::perfect_fluid(), Bounds::within(2.0)),
     ] {
         let turning = found(swimmer, bounds);
         let model = Model::new(&swimmer).unwrap();
