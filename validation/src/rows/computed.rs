@@ -20,6 +20,17 @@ pub(super) fn value_of(gait: &OptimalGait, condition: Condition) -> f64 {
     value.unwrap_or(f64::NAN)
 }
 
+/// Largest of values that are not negative; NaN if one of them is NaN, so that a row with it fails.
+pub(super) fn largest(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(0.0, |largest, value| {
+        if largest.is_nan() || largest >= value {
+            largest
+        } else {
+            value
+        }
+    })
+}
+
 /// First locally best amplitude.
 pub(super) fn first(best: &[BestAmplitude]) -> &BestAmplitude {
     best.first().unwrap_or(&NONE)
@@ -36,3 +47,15 @@ const NONE: BestAmplitude = BestAmplitude {
     displacement_over_length: f64::NAN,
     efficiency: f64::NAN,
 };
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_largest_value_keeps_a_nan() {
+        assert!((largest([0.1, 0.3, 0.2].into_iter()) - 0.3).abs() < 1e-15);
+        assert!(largest([0.1, f64::NAN, 0.2].into_iter()).is_nan());
+        assert!(largest([f64::NAN].into_iter()).is_nan());
+    }
+}

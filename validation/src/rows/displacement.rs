@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 use swimmer_files::AnyGait;
 use swimmer_model::{Fourier, Harmonic, Links, Model, Tolerance, swim};
 
-use super::computed::{Computed, failed_checks, first, second};
+use super::computed::{Computed, failed_checks, first, largest, second};
 use crate::study::{Simple, Study};
 
 /// Section II.B: data of the robot.
@@ -123,7 +123,7 @@ pub(super) fn height_maps(study: &Study) -> Vec<Computed> {
     };
     vec![
         ("area_rule", ratio),
-        ("zero_curve.purcell", apart.fold(0.0, f64::max)),
+        ("zero_curve.purcell", largest(apart)),
         ("zero_curve.purcell.joins", joining(&study.purcell_map)),
         ("zero_curve.robot", joining(&study.robot_map)),
     ]

@@ -4,7 +4,7 @@ use gait_optimizer::{BestAmplitude, Condition, closed_forms};
 use nalgebra::Vector2;
 use swimmer_model::{Model, Swimmer};
 
-use super::computed::{Computed, failed_checks, first, second, value_of};
+use super::computed::{Computed, failed_checks, first, largest, second, value_of};
 use crate::study::{Lighthill, Simple, Study};
 
 /// Section V.A: circles and squares again, for the efficiency.
@@ -92,23 +92,17 @@ pub(super) fn appendices(study: &Study) -> Vec<Computed> {
         &study.robot_lighthill.small,
         &study.robot_lighthill.large,
     ];
-    let largest = |condition: Condition| {
-        gaits
-            .iter()
-            .map(|gait| value_of(gait, condition))
-            .fold(0.0, f64::max)
-    };
+    let largest_of =
+        |condition: Condition| largest(gaits.iter().map(|gait| value_of(gait, condition)));
     let forms = |symmetric: bool| {
-        [&study.purcell, &study.robot]
-            .into_iter()
-            .flat_map(|model| {
-                (1..30).map(move |i| form_deviation(model, 0.1 * f64::from(i), symmetric))
-            })
-            .fold(0.0, f64::max)
+        let models = [&study.purcell, &study.robot].into_iter();
+        largest(models.flat_map(|model| {
+            (1..30).map(move |i| form_deviation(model, 0.1 * f64::from(i), symmetric))
+        }))
     };
     vec![
-        ("appendix_a.power", largest(Condition::ConstantPower)),
-        ("appendix_b.ends", largest(Condition::EndsSquare)),
+        ("appendix_a.power", largest_of(Condition::ConstantPower)),
+        ("appendix_b.ends", largest_of(Condition::EndsSquare)),
         ("appendix_b.b4", forms(true)),
         ("appendix_b.b9", forms(false)),
     ]
