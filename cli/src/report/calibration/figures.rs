@@ -1,7 +1,7 @@
 //! The charts of a calibration's report, each from the numbers it shows.
 
 use calibrate::evidence::{Evidence, Profile};
-use calibrate::{Cycle, RunResult};
+use calibrate::{Cycle, PoseSample, RunResult};
 use plotters::style::RGBColor;
 
 use crate::failure::Outcome;
@@ -33,16 +33,25 @@ fn chart(labels: [&str; 2], size: (i32, i32), series: Vec<Series>) -> Chart {
 const SWAP: RGBColor = RGBColor(0xc0, 0x39, 0x6b);
 const GHOST: RGBColor = RGBColor(0xe0, 0xb0, 0x30);
 
-/// The way of the link's centre: what was seen, what was filled, and where names were exchanged or ghosts about.
-pub(super) fn track(run: &RunResult) -> Outcome<String> {
-    let samples = &run.poses.samples;
-    let every = samples.len().div_ceil(MOST_POINTS).max(1);
-    let place = |sample: &calibrate::PoseSample| (sample.pose.x * 1e3, sample.pose.y * 1e3);
-    let filled = samples
+/// Places \[mm\] of the samples that a predicate selects, at most [`MOST_POINTS`] of them, evenly spread.
+fn places(samples: &[PoseSample], is_selected: impl Fn(&PoseSample) -> bool) -> Vec<Point> {
+    let selected: Vec<Point> = samples
         .iter()
-        .filter(|s| s.is_filled())
+        .filter(|sample| is_selected(sample))
         .map(place)
         .collect();
+    let every = selected.len().div_ceil(MOST_POINTS).max(1);
+    selected.into_iter().step_by(every).collect()
+}
+
+/// Place of a sample \[mm\].
+fn place(sample: &PoseSample) -> Point {
+    (sample.pose.x * 1e3, sample.pose.y * 1e3)
+}
+
+/// Path of the link's centre, with its filled gaps, and the places where names were exchanged or ghosts appeared.
+pub(super) fn track(run: &RunResult) -> Outcome<String> {
+    let samples = &run.poses.samples;
     let jumps = run.poses.jumps.iter().filter_map(|jump| {
         let after = samples.iter().find(|sample| sample.time_s >= jump.after_s);
         after.map(place)
@@ -52,13 +61,7 @@ pub(super) fn track(run: &RunResult) -> Outcome<String> {
             let next = stretches.partition_point(|stretch| stretch.until_s < time);
             stretches.get(next).is_some_and(|s| s.from_s <= time)
         };
-        let marked: Vec<Point> = samples
-            .iter()
-            .filter(|sample| during(sample.time_s))
-            .map(place)
-            .collect();
-        let every = marked.len().div_ceil(MOST_POINTS).max(1);
-        marked.into_iter().step_by(every).collect()
+        places(samples, |sample| during(sample.time_s))
     };
     let report = &run.poses.report;
     let starts = run.cycles.cycles.iter().map(|cycle| {
@@ -72,7 +75,7 @@ pub(super) fn track(run: &RunResult) -> Outcome<String> {
             SMALL,
             vec![
                 Series::Line {
-                    points: samples.iter().step_by(every).map(place).collect(),
+                    points: places(samples, |_| true),
                     color: MEASURED_BAND,
                     width: 1.2,
                 },
@@ -87,7 +90,7 @@ pub(super) fn track(run: &RunResult) -> Outcome<String> {
                     radius: 1.8,
                 },
                 Series::Dots {
-                    points: filled,
+                    points: places(samples, PoseSample::is_filled),
                     color: PREDICTED,
                     radius: 1.0,
                 },
@@ -347,4 +350,33 @@ pub(super) fn residuals(evidence: &Evidence, names: &[String]) -> Outcome<String
     }
     series.push(Series::Names(names.to_vec()));
     chart(["", "residual / standard error"], LOW, series).svg()
+}
+
+#[cfg(test)]
+mod tests {
+    use calibrate::Origin;
+    use swimmer_model::Pose;
+
+    use super::*;
+
+    #[test]
+    fn filled_places_are_thinned() {
+        let sample = |i: u32| PoseSample {
+            time_s: f64::from(i) * 0.01,
+            pose: Pose::new(f64::from(i) * 1e-3, 0.0, 0.0),
+            origin: if i.is_multiple_of(2) {
+                Origin::Filled
+            } else {
+                Origin::Seen
+            },
+        };
+        let samples: Vec<PoseSample> = (0..20_000).map(sample).collect();
+        let filled = places(&samples, PoseSample::is_filled);
+        assert!(filled.len() <= MOST_POINTS && filled.len() > MOST_POINTS / 2);
+        // To both ends, and filled samples only.
+        assert!(filled.first().unwrap().0 < 1.0 && filled.last().unwrap().0 > 19_900.0);
+        assert!(filled.iter().all(|(x, _)| x.round() % 2.0 == 0.0));
+        // A few are all kept.
+        assert_eq!(places(&samples[..10], PoseSample::is_filled).len(), 5);
+    }
 }
