@@ -1,7 +1,7 @@
-//! Can the answer be used? Random scatter shows in the intervals by itself; what all cycles of all runs share does not. Here stands
-//! what noise cannot hide: how well the model explains the runs at all (`goodness.rs`), what else would explain them, side by side
-//! (`explanations.rs`), how r_s and χ move with what the files take for granted, and the estimate that lets it move as far as it
-//! is known (`systematics.rs`). The verdict (`verdict.rs`) sums up, with its reasons.
+//! Assessment of a fit. The intervals of a fit contain the random scatter, not an error that all cycles of all runs share. This module
+//! looks for such errors: goodness of fit (`goodness.rs`), alternative explanations (`explanations.rs`), sensitivity of r_s and χ to
+//! the values in the files (`budget.rs`), and an estimate in which every parameter with a prior varies within it
+//! (`systematics.rs`). The verdict (`verdict.rs`) sums up, with its reasons.
 
 mod agreement;
 mod budget;
@@ -42,11 +42,11 @@ pub struct Assessment {
     pub verdict: Verdict,
     /// Reasons; empty if nothing speaks against the fit.
     pub reasons: Vec<String>,
-    /// The answer that is recommended.
+    /// Recommended estimate.
     pub headline: Headline,
     /// Goodness of fit.
     pub goodness: Goodness,
-    /// r_s and χ where what is known by halves may move; `None` where the runs are too few for it.
+    /// r_s and χ with every parameter that has a prior varying within it; `None` if there are too few runs.
     pub systematics: Option<Systematics>,
     /// Sensitivity of r_s and χ to the assumptions.
     pub budget: Vec<BudgetLine>,
@@ -119,7 +119,7 @@ impl Plain {
     }
 
     /// Value of a parameter by the files.
-    fn filed(&self, parameter: Parameter) -> f64 {
+    fn value_in_files(&self, parameter: Parameter) -> f64 {
         match parameter {
             Parameter::DeadBand => self.model.start.servo.map_or(0.0, |servo| servo.dead_band),
             _ => 0.0,
@@ -138,7 +138,7 @@ pub(crate) fn recommended(found: &CampaignFit) -> Result<(RunModel, Estimate), F
     })
 }
 
-/// Assesses a finished fit; `evidence` where it was weighed.
+/// Assesses a finished fit, with its `evidence` if that was computed.
 ///
 /// # Errors
 /// [`FitError`]: the runs do not determine r_s and χ.

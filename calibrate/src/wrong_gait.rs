@@ -46,8 +46,9 @@ pub fn other_gaits(
     let factors: Vec<(usize, f64, f64)> = runs
         .iter()
         .filter_map(|run| {
-            let told = campaign.runs.get(run.index)?;
-            let (amplitude, factor) = amplitude_by_sway(run, &told.gait, told.period_s, swimmer)?;
+            let stated = campaign.runs.get(run.index)?;
+            let (amplitude, factor) =
+                amplitude_by_sway(run, &stated.gait, stated.period_s, swimmer)?;
             Some((run.index, amplitude, factor))
         })
         .collect();
@@ -77,36 +78,36 @@ fn amplitude(gait: &GaitSpec) -> Option<f64> {
     }
 }
 
-/// The amplitude \[rad\] that a circle or square is said to have had, and the factor to the one whose sway and yaw come nearest to
-/// those of the run. None for another gait, or where no amplitude does.
+/// Stated amplitude \[rad\] of a circle or square, and its ratio to the amplitude whose sway and yaw are nearest to those of the run.
+/// Returns `None` for other gaits, or if no amplitude has such sway and yaw.
 pub fn amplitude_by_sway(
     run: &RunResult,
     gait: &GaitSpec,
     period_s: f64,
     swimmer: &SwimmerFile,
 ) -> Option<(f64, f64)> {
-    let told = amplitude(gait)?;
+    let stated = amplitude(gait)?;
     let measured = [run.cycles.delta_y.mean, run.cycles.delta_theta.mean];
     let mut factor = 1.0;
     for _ in 0..CORRECTIONS {
         let shape = match gait {
             GaitSpec::Circle { clockwise, .. } => {
-                AnyGait::circle(told * factor).reversed_if(*clockwise)
+                AnyGait::circle(stated * factor).reversed_if(*clockwise)
             }
             GaitSpec::Square { clockwise, .. } => {
-                AnyGait::square(told * factor).reversed_if(*clockwise)
+                AnyGait::square(stated * factor).reversed_if(*clockwise)
             }
             GaitSpec::File { .. } => return None,
         };
-        let foretold = predict(swimmer, &shape, period_s).ok()?;
+        let predicted = predict(swimmer, &shape, period_s).ok()?;
         let [sway, yaw] = [
-            measured[0] / foretold.delta_y_m,
-            measured[1] / foretold.delta_theta_rad,
+            measured[0] / predicted.delta_y_m,
+            measured[1] / predicted.delta_theta_rad,
         ];
         factor *= (sway * yaw).sqrt();
         if !(factor.is_finite() && factor > 0.05 && factor < 20.0) {
             return None;
         }
     }
-    Some((told, factor))
+    Some((stated, factor))
 }

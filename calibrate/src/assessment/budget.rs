@@ -59,10 +59,10 @@ pub(super) fn budget(plain: &Plain, known: &[Known]) -> Vec<BudgetLine> {
     let length = plain.length();
     let line = |(parameter, by): (Parameter, f64)| -> Option<BudgetLine> {
         let per = if parameter.unit() == "m" { length } else { 1.0 };
-        let filed = plain.filed(parameter);
+        let in_files = plain.value_in_files(parameter);
         let (model, _) = plain.with(&[parameter], &[]);
         let at = |value: f64| model.values(&[plain.telling.at.as_slice(), &[value]].concat());
-        let (here, there) = (at(filed)?, at(filed + by / per)?);
+        let (here, there) = (at(in_files)?, at(in_files + by / per)?);
         let change = nalgebra::DVector::from_iterator(
             here.len(),
             there.iter().zip(&here).map(|(there, here)| there - here),

@@ -101,9 +101,9 @@ impl Explanation {
 /// All of them, the likeliest first.
 pub(super) fn explanations(plain: &Plain) -> Vec<Explanation> {
     let explain = |(name, more, others): &(&'static str, &[Parameter], &[f64])| {
-        let filed: Vec<f64> = more
+        let in_files: Vec<f64> = more
             .iter()
-            .map(|parameter| plain.filed(*parameter))
+            .map(|parameter| plain.value_in_files(*parameter))
             .collect();
         let data = &plain.data;
         let along = |model: &RunModel, tangent: &Tangent, start: &[f64]| {
@@ -114,7 +114,7 @@ pub(super) fn explanations(plain: &Plain) -> Vec<Explanation> {
             let found = Tangent::estimate(model, data, &rough.at, &rough.weights)?.0;
             Some(found)
         };
-        let (model, start) = plain.with(more, &filed);
+        let (model, start) = plain.with(more, &in_files);
         let first = plain.tangent_with(&model, &start);
         let first = first.and_then(|tangent| along(&model, &tangent, &start));
         let found = others.iter().filter_map(|value| {
@@ -123,14 +123,14 @@ pub(super) fn explanations(plain: &Plain) -> Vec<Explanation> {
         });
         let found = first.into_iter().chain(found);
         let best = found.max_by(|a, b| a.log_likelihood.total_cmp(&b.log_likelihood))?;
-        let parameters = more.iter().zip(&filed).zip(&best.at[2..]);
+        let parameters = more.iter().zip(&in_files).zip(&best.at[2..]);
         Some(Explanation {
             name,
             parameters: parameters
-                .map(|((parameter, filed), value)| Explained {
+                .map(|((parameter, in_files), value)| Explained {
                     name: parameter.name(),
                     unit: parameter.unit(),
-                    before: plain.model.natural(*parameter, *filed),
+                    before: plain.model.natural(*parameter, *in_files),
                     value: plain.model.natural(*parameter, *value),
                 })
                 .collect(),

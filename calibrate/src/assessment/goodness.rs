@@ -295,8 +295,8 @@ fn length_scale(joint: &Joint, run: usize) -> Option<[f64; 2]> {
     let (mut product, mut square) = (0.0, 0.0);
     for row in rows {
         let gradient = rest.jacobian.row(row);
-        let foretold = (gradient * &covariance * gradient.transpose())[(0, 0)];
-        let weight = 1.0 / (foretold + rest.components.variance(row));
+        let of_prediction = (gradient * &covariance * gradient.transpose())[(0, 0)];
+        let weight = 1.0 / (of_prediction + rest.components.variance(row));
         let measured = joint.data.values[row];
         let predicted = measured + rest.residuals[row];
         product += weight * measured * predicted;

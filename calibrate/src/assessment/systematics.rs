@@ -132,17 +132,17 @@ impl Joint {
         let foreseen = problem.mode(f64::NEG_INFINITY, &tangent)?;
         let least = evidence(&foreseen.estimate) + LEAST_ODDS;
         let enough = |mode: &Mode| evidence(&mode.estimate) > least;
-        let untold = |parameter: Parameter| {
+        let has_no_prior = |parameter: Parameter| {
             let knows = |known: &Known| known.prior.parameter == parameter;
             plain.model.has_use_for(parameter) && !known.iter().any(knows)
         };
         let more = UNFORESEEN
             .iter()
-            .filter(|(parameter, _)| untold(*parameter));
+            .filter(|(parameter, _)| has_no_prior(*parameter));
         let more = more.filter_map(|(parameter, width)| {
             let prior = Prior {
                 parameter: *parameter,
-                value: plain.filed(*parameter),
+                value: plain.value_in_files(*parameter),
                 width: *width,
             };
             let problem = JointProblem::new(plain, known, Some(prior));
@@ -153,7 +153,7 @@ impl Joint {
             let place = mode.estimate.at.len() - 1;
             let deviation = mode.estimate.components.covariance()[(place, place)].sqrt();
             let value = mode.estimate.at[place];
-            let told = (value - prior.value).abs() > TELLING_DEVIATIONS * deviation;
+            let is_significant = (value - prior.value).abs() > TELLING_DEVIATIONS * deviation;
             let unforeseen = Unforeseen {
                 name: parameter.name(),
                 unit: parameter.unit(),
@@ -162,7 +162,7 @@ impl Joint {
                 log_odds: evidence(&mode.estimate) - evidence(&foreseen.estimate),
                 remedy: remedy(*parameter),
             };
-            told.then_some((problem, mode, unforeseen))
+            is_significant.then_some((problem, mode, unforeseen))
         });
         let best = more.max_by(|a, b| evidence(&a.1.estimate).total_cmp(&evidence(&b.1.estimate)));
         let (problem, mode, unforeseen) = match best {
@@ -229,7 +229,7 @@ impl Joint {
     fn reduced_chi2(&self, measured: usize) -> Option<f64> {
         let Self { data, tangent, .. } = self;
         let weights = data.weights(|row| data.within[row].value);
-        let told = data.has_errors();
+        let has_errors = data.has_errors();
         let end = minimise(
             tangent,
             &data.values,
@@ -238,6 +238,6 @@ impl Joint {
             &tangent.bounds(),
         )?;
         let count = data.used[..measured].iter().filter(|used| **used).count();
-        (told && count > 2).then(|| end.cost / (count - 2) as f64)
+        (has_errors && count > 2).then(|| end.cost / (count - 2) as f64)
     }
 }

@@ -16,9 +16,9 @@ use crate::nuisance::scan::ALIKE;
 pub enum Verdict {
     /// Nothing speaks against it.
     Trust,
-    /// Use it with its reasons at hand.
+    /// Usable, with regard to the reasons.
     Caution,
-    /// Mend what the reasons name first.
+    /// First correct the errors that the reasons name.
     DoNotUse,
 }
 
@@ -39,14 +39,14 @@ impl fmt::Display for Verdict {
     }
 }
 
-/// The answer that is recommended.
+/// Recommended estimate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Headline {
-    /// By which estimate: `paper`, or `systematics` where that one and the likelihood's leave its intervals.
+    /// Source: `paper`, or `systematics` if the paper's estimate or the likelihood's lies outside its intervals.
     pub by: &'static str,
     /// r_s and χ.
     pub estimate: Pair,
-    /// Intervals with systematic errors where the runs suffice for them, else the paper's fit's.
+    /// Intervals with systematic errors; those of the paper's fit if there are too few runs for them.
     pub intervals: Intervals,
 }
 

@@ -1,6 +1,6 @@
-//! Does one value stand out? Each is left out in turn, to first order: r_s and χ go where the others pull them, the variances
-//! are estimated from the others, and the value is held against what those expect. Told in every fit; the likelihood
-//! (`evidence/deletion.rs`) does the same without the shortcut and goes on without the value.
+//! Test for outliers. Each value is left out in turn, to first order: r_s and χ follow the other values, the variances are estimated
+//! from these, and the value is compared with their prediction. Every fit reports the result. The likelihood
+//! (`evidence/deletion.rs`) repeats the test without the first-order shortcut and continues without the outlier.
 
 use nalgebra::{DMatrix, DVector};
 

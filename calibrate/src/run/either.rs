@@ -81,13 +81,13 @@ impl EitherRun<'_> {
         swimmer: &Swimmer<f64>,
         projection: &Projection,
     ) -> Result<Option<Opposed>, CalibrateError> {
-        let (told, name) = match self {
+        let (played, name) = match self {
             Self::Tracked(run) => (&run.commanded, &run.data.gait_name),
             Self::Reported(run) => (&run.played, &run.gait),
         };
         Ok(opposed(
             cycles,
-            told.path.predict(swimmer, projection)?.0.x_m,
+            played.path.predict(swimmer, projection)?.0.x_m,
             name.ends_with(":cw"),
         ))
     }
