@@ -1,14 +1,16 @@
 //! The values on the command line that several commands share.
 
+use std::path::Path;
 use std::str::FromStr;
 use std::time::Duration;
 
-use operations::{Context, Error, SwimmerSource};
+use gait_optimizer::Uncertainty;
+use operations::{SwimmerSource, fit_file};
 use swimmer_files::{AnyGait, GaitSpec, SwimmerFile, parse_angle, parse_rate};
 use swimmer_model::Model;
 
-use crate::failure::{Failure, Outcome};
-use crate::output::asides;
+use crate::context::perform;
+use crate::failure::Outcome;
 
 /// An angle on the command line, in radians.
 pub(crate) fn angle(text: &str) -> Result<f64, String> {
@@ -130,7 +132,7 @@ pub(crate) fn gait(text: &str) -> Result<GaitSpec, String> {
 
 /// Loads the swimmer that `--swimmer` names, and prints its warnings.
 pub(crate) fn load_swimmer(preset_or_path: &str) -> Outcome<SwimmerFile> {
-    printing(|context| SwimmerSource::from(preset_or_path).load(context))
+    perform(|context| SwimmerSource::from(preset_or_path).load(context))
 }
 
 /// The same for a robot, its twin or a fit, which know the paper's parameters only ([`Swimmer::common_drag`]).
@@ -147,24 +149,14 @@ pub(crate) fn load_gait(spec: &GaitSpec) -> Outcome<AnyGait> {
     Ok(spec.load()?)
 }
 
-/// Runs an operation on the file system and prints its warnings.
-fn printing<T>(operation: impl FnOnce(&mut Context) -> Result<T, Error>) -> Outcome<T> {
-    let mut context = Context::on_disk();
-    let done = operation(&mut context);
-    asides(&context);
-    Ok(done?)
+/// Loads the uncertainty that a fit leaves.
+pub(crate) fn load_fit(path: &Path) -> Outcome<Uncertainty> {
+    perform(|context| fit_file::load(path, context))
 }
 
 /// The model of a swimmer.
 pub(crate) fn model(file: &SwimmerFile) -> Outcome<Model<f64>> {
     Ok(operations::model(file)?)
-}
-
-impl From<swimmer_files::FileError> for Failure {
-    /// A file that cannot be read, or says something wrong, is bad input; one that cannot be written is a failed try.
-    fn from(error: swimmer_files::FileError) -> Self {
-        Error::from(error).into()
-    }
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
 //! Bounds on shapes, as every command takes them from the command line.
 
 use operations::bounds::BoundsRequest;
-use swimmer_files::{ArcKind, Bounds, SwimmerFile};
 
 use crate::arguments::{length, positive_angle};
 
@@ -46,52 +45,6 @@ struct LinkBounds {
     playable: bool,
 }
 
-/// The options that bounds were given by, so that a refusal names those that are there.
-pub(crate) trait Given {
-    /// Those by which a gait runs along arcs of this kind; of no kind, all.
-    fn given(&self, kind: Option<ArcKind>) -> Vec<&'static str>;
-}
-
-impl LinkBounds {
-    fn given(self) -> [(bool, ArcKind, &'static str); 4] {
-        [
-            (self.no_overlap, ArcKind::Clearance, "--no-overlap"),
-            (self.clearance.is_some(), ArcKind::Clearance, "--clearance"),
-            (self.playable, ArcKind::Clearance, "--playable"),
-            (self.playable, ArcKind::Upper, "--playable"),
-        ]
-    }
-}
-
-fn of_kind(
-    options: impl IntoIterator<Item = (bool, ArcKind, &'static str)>,
-    kind: Option<ArcKind>,
-) -> Vec<&'static str> {
-    let options = options.into_iter();
-    let those = options.filter(|(given, of, _)| *given && kind.is_none_or(|kind| kind == *of));
-    let mut names: Vec<&'static str> = those.map(|(.., name)| name).collect();
-    names.dedup();
-    names
-}
-
-impl Given for CycleBounds {
-    fn given(&self, kind: Option<ArcKind>) -> Vec<&'static str> {
-        let own = [(self.max_angle.is_some(), ArcKind::Upper, "--max-angle")];
-        of_kind(own.into_iter().chain(self.links.given()), kind)
-    }
-}
-
-impl Given for QuarterBounds {
-    fn given(&self, kind: Option<ArcKind>) -> Vec<&'static str> {
-        let own = [
-            (self.max_angle.is_some(), ArcKind::Upper, "--max-angle"),
-            (self.min_angle.is_some(), ArcKind::Lower, "--min-angle"),
-            (self.sector, ArcKind::Diagonal, "--sector"),
-        ];
-        of_kind(own.into_iter().chain(self.links.given()), kind)
-    }
-}
-
 impl CycleBounds {
     /// The limits of the robot alone (`--playable`).
     pub(crate) fn for_playing() -> Self {
@@ -103,28 +56,6 @@ impl CycleBounds {
                 playable: true,
             },
         }
-    }
-
-    /// `true` if the gait must be playable on the robot.
-    pub(crate) fn playable(&self) -> bool {
-        self.links.playable
-    }
-
-    /// The bounds for a swimmer.
-    pub(crate) fn of(self, file: &SwimmerFile) -> Bounds {
-        BoundsRequest::from(self).of(file)
-    }
-}
-
-impl QuarterBounds {
-    /// `true` if the gait must be playable on the robot.
-    pub(crate) fn playable(&self) -> bool {
-        self.links.playable
-    }
-
-    /// The bounds for a swimmer.
-    pub(crate) fn of(self, file: &SwimmerFile) -> Bounds {
-        BoundsRequest::from(self).of(file)
     }
 }
 

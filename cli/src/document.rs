@@ -53,13 +53,6 @@ impl Document {
         self
     }
 
-    /// Adds a line of text for people, before all rows.
-    pub(crate) fn line(&mut self, text: impl AsRef<str>) -> &mut Self {
-        self.text.push('\n');
-        self.text.push_str(text.as_ref());
-        self
-    }
-
     /// Adds a line for people, of a label and a value.
     pub(crate) fn row(&mut self, label: impl Into<String>, value: impl Into<String>) -> &mut Self {
         self.rows.row(label, value);
@@ -106,6 +99,5 @@ mod tests {
             r#"{"z":{"b":0.1,"a":null},"x":[1,2]}"#
         );
         assert_eq!(document.to_string(), "title\n  label  value");
-        assert_eq!(document.line("").to_string(), "title\n\n  label  value");
     }
 }

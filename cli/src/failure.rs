@@ -1,7 +1,10 @@
 //! The ways a command can go wrong, and the exit status each of them has.
 
-use forecast::ForecastError;
+use calibrate::{CalibrateError, TrackError};
+use forecast::{ForecastError, TimingError};
+use gait_optimizer::{AtlasError, SpeedError};
 use operations::{Error, ErrorKind};
+use swimmer_files::FileError;
 use swimmer_model::{InvalidSwimmer, UncommonDrag};
 
 use crate::output::verbose;
@@ -32,19 +35,6 @@ impl Failure {
         Error::failed(error).into()
     }
 
-    /// [`Failure::Tried`] with details for experts: printed with `--verbose`; without it, only that there are details.
-    pub(crate) fn tried_with_details(
-        error: &dyn std::error::Error,
-        details: Option<String>,
-    ) -> Self {
-        let said = Error::failed(error).message;
-        Self::Tried(match details {
-            None => said,
-            Some(details) if verbose() => format!("{said}\n  {details}"),
-            Some(_) => format!("{said} (--verbose prints details)"),
-        })
-    }
-
     /// Input that cannot be used, with every cause that the error names.
     pub(crate) fn bad_input(error: &dyn std::error::Error) -> Self {
         Error::bad_input(error).into()
@@ -63,7 +53,11 @@ impl From<Error> for Failure {
     fn from(error: Error) -> Self {
         match error.kind {
             ErrorKind::BadInput => Self::BadInput(error.message),
-            ErrorKind::Failed => Self::Tried(error.message),
+            ErrorKind::Failed => Self::Tried(match error.details {
+                None => error.message,
+                Some(details) if verbose() => format!("{}\n  {details}", error.message),
+                Some(_) => format!("{} (--verbose prints details)", error.message),
+            }),
         }
     }
 }
@@ -74,8 +68,23 @@ impl From<UncommonDrag> for Failure {
     }
 }
 
-impl From<ForecastError> for Failure {
-    fn from(error: ForecastError) -> Self {
-        Error::from(error).into()
-    }
+/// Errors of libraries whose kind `operations` decides.
+macro_rules! by_operations {
+    ($($error:ty),* $(,)?) => {$(
+        impl From<$error> for Failure {
+            fn from(error: $error) -> Self {
+                Error::from(error).into()
+            }
+        }
+    )*};
 }
+
+by_operations!(
+    AtlasError,
+    CalibrateError,
+    FileError,
+    ForecastError,
+    SpeedError,
+    TimingError,
+    TrackError,
+);

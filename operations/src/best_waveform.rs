@@ -191,13 +191,10 @@ pub fn run(request: &Request, context: &mut Context) -> Result<Output, Error> {
     let stroke = swim(&model, &cycle, &Tolerance::default());
     let reached = stroke.displacement.norm();
     if (reached / best.values.displacement - 1.0).abs() > AGREEMENT {
-        return Err(Error {
-            kind: crate::ErrorKind::Failed,
-            message: format!(
-                "the search found {} m a cycle, but the integrated limit cycle swims {reached} m; use fewer harmonics",
-                best.values.displacement
-            ),
-        });
+        return Err(Error::unsuccessful(format!(
+            "the search found {} m a cycle, but the integrated limit cycle swims {reached} m; use fewer harmonics",
+            best.values.displacement
+        )));
     }
     Ok(Output {
         name: file.name.clone(),

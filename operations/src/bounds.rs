@@ -1,7 +1,7 @@
 //! Bounds on the shapes of a gait, and those of the robot that shall play it.
 
 use serde::Deserialize;
-use swimmer_files::{Bounds, SwimmerFile};
+use swimmer_files::{ArcKind, Bounds, SwimmerFile};
 
 /// Bounds on shapes, with the names of the command's options.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Deserialize)]
@@ -22,6 +22,25 @@ pub struct BoundsRequest {
 }
 
 impl BoundsRequest {
+    /// The command's options by which a gait gets arcs of this kind; all options for `None`. Messages name them.
+    pub(crate) fn options(&self, kind: Option<ArcKind>) -> Vec<&'static str> {
+        let all = [
+            (self.max_angle.is_some(), ArcKind::Upper, "--max-angle"),
+            (self.min_angle.is_some(), ArcKind::Lower, "--min-angle"),
+            (self.sector, ArcKind::Diagonal, "--sector"),
+            (self.no_overlap, ArcKind::Clearance, "--no-overlap"),
+            (self.clearance > 0.0, ArcKind::Clearance, "--clearance"),
+            (self.playable, ArcKind::Clearance, "--playable"),
+            (self.playable, ArcKind::Upper, "--playable"),
+        ];
+        let given = all
+            .into_iter()
+            .filter(|(given, of, _)| *given && kind.is_none_or(|kind| kind == *of));
+        let mut names: Vec<&'static str> = given.map(|(.., name)| name).collect();
+        names.dedup();
+        names
+    }
+
     /// The bounds for a swimmer.
     pub fn of(&self, file: &SwimmerFile) -> Bounds {
         let bounds = Bounds {

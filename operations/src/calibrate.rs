@@ -10,9 +10,9 @@ use std::path::Path;
 
 use calibrate::{
     Advice, Assessment, CalibrateError, CampaignData, CampaignFit, Evidence, EvidenceOptions,
-    FitError, FitOptions, NuisanceFit, NuisanceParameter, RunResult, TrackOptions, UsedPoints,
-    advise, assess, calibrate_campaign, calibrate_run, fit_nuisance, load_run, usual_reflectors,
-    weigh_evidence,
+    FitError, FitOptions, NuisanceFit, NuisanceParameter, RunResult, TrackError, TrackOptions,
+    UsedPoints, advise, assess, calibrate_campaign, calibrate_run, fit_nuisance, load_run,
+    usual_reflectors, weigh_evidence,
 };
 use swimmer_files::{Campaign, GaitSpec, PointName, Reflector, Reflectors, RigidBody, SwimmerFile};
 
@@ -214,5 +214,12 @@ impl From<CalibrateError> for Error {
         } else {
             Self::failed(&error)
         }
+    }
+}
+
+impl From<TrackError> for Error {
+    /// A tracking file that cannot be read is bad input.
+    fn from(error: TrackError) -> Self {
+        Self::bad_input(&error)
     }
 }

@@ -1,4 +1,6 @@
-//! Access to files, and the warnings of an operation.
+//! Surroundings of an operation: files, warnings, threads, clock and progress.
+
+use std::fmt;
 
 /// Access to files by path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -9,34 +11,109 @@ pub enum Files {
     Unavailable,
 }
 
+/// Stage of a long computation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stage {
+    /// Search of unknown length.
+    Search,
+    /// Search for closed curves.
+    ClosedCurves,
+    /// Search for loops.
+    Loops,
+    /// Search for the fastest gait.
+    FastestGait,
+    /// Search for gaits that join.
+    JoiningGaits,
+    /// Search for all optima.
+    Optima,
+    /// Continuation of gaits.
+    Continuation,
+}
+
+/// Progress of a long computation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Progress {
+    /// A stage begins.
+    Begin(Stage),
+    /// This share of the stage is complete; less than before if it begins again.
+    Share(f64),
+    /// The stage ends.
+    End,
+}
+
+/// Receiver of progress, which may be called from any thread.
+pub type Watch = Box<dyn Fn(Progress) + Send + Sync>;
+
 /// Surroundings of an operation.
-#[derive(Debug)]
 pub struct Context {
     /// Access to files by path.
     pub files: Files,
     /// Warnings and notes for the user, in the order in which they arose, each a sentence.
     pub warnings: Vec<String>,
+    /// Number of threads of a search; results do not depend on it.
+    pub threads: usize,
+    /// Clock \[s\] from any start, for the duration of searches; `None` leaves durations out of the outputs.
+    pub clock: Option<fn() -> f64>,
+    /// Receiver of progress.
+    pub watch: Watch,
 }
 
 impl Context {
-    /// A context with the file system of this machine.
+    /// A context with the file system of this machine, one thread, no clock and no progress.
     pub fn on_disk() -> Self {
         Self {
             files: Files::Disk,
             warnings: Vec::new(),
+            threads: 1,
+            clock: None,
+            watch: Box::new(|_| ()),
         }
     }
 
-    /// A context without a file system, as in a browser.
+    /// The same without a file system, as in a browser.
     pub fn without_files() -> Self {
         Self {
             files: Files::Unavailable,
-            warnings: Vec::new(),
+            ..Self::on_disk()
         }
     }
 
     /// Adds a warning.
     pub(crate) fn warn(&mut self, warning: impl Into<String>) {
         self.warnings.push(warning.into());
+    }
+
+    /// Runs a stage, which reports the completed share, and measures its duration.
+    pub(crate) fn timed<T>(
+        &self,
+        stage: Stage,
+        compute: impl FnOnce(&(dyn Fn(f64) + Sync)) -> T,
+    ) -> Timed<T> {
+        let begun = self.clock.map(|clock| clock());
+        (self.watch)(Progress::Begin(stage));
+        let result = compute(&|share| (self.watch)(Progress::Share(share)));
+        (self.watch)(Progress::End);
+        let ended = self.clock.map(|clock| clock());
+        Timed {
+            result,
+            seconds: ended.zip(begun).map(|(ended, begun)| ended - begun),
+        }
+    }
+}
+
+/// Result of a stage.
+pub(crate) struct Timed<T> {
+    pub(crate) result: T,
+    /// Duration \[s\]; `None` without a clock.
+    pub(crate) seconds: Option<f64>,
+}
+
+impl fmt::Debug for Context {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Context")
+            .field("files", &self.files)
+            .field("warnings", &self.warnings)
+            .field("threads", &self.threads)
+            .finish_non_exhaustive()
     }
 }

@@ -22,6 +22,8 @@ pub struct Error {
     pub kind: ErrorKind,
     /// Sentence for the user, with all causes.
     pub message: String,
+    /// Details for experts.
+    pub details: Option<String>,
 }
 
 impl Error {
@@ -30,6 +32,7 @@ impl Error {
         Self {
             kind: ErrorKind::BadInput,
             message: with_causes(error),
+            details: None,
         }
     }
 
@@ -38,6 +41,7 @@ impl Error {
         Self {
             kind: ErrorKind::Failed,
             message: with_causes(error),
+            details: None,
         }
     }
 
@@ -46,7 +50,22 @@ impl Error {
         Self {
             kind: ErrorKind::BadInput,
             message: message.into(),
+            details: None,
         }
+    }
+
+    /// A computation without a result, in a sentence.
+    pub fn unsuccessful(message: impl Into<String>) -> Self {
+        Self {
+            kind: ErrorKind::Failed,
+            message: message.into(),
+            details: None,
+        }
+    }
+
+    /// Adds details for experts.
+    pub(crate) fn with_details(self, details: Option<String>) -> Self {
+        Self { details, ..self }
     }
 }
 

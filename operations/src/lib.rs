@@ -15,14 +15,18 @@
 //! # Ok::<(), operations::Error>(())
 //! ```
 
+pub mod atlas;
 pub mod best_waveform;
 pub mod bounds;
 pub mod calibrate;
+pub mod catalogue;
 pub mod certify;
 mod context;
 mod error;
+pub mod fit_file;
 pub mod fluid;
 pub mod height_map;
+pub mod optimize;
 pub mod passive;
 pub mod played;
 pub mod robot_limits;
@@ -30,7 +34,7 @@ pub mod simulate;
 mod source;
 pub mod text;
 
-pub use context::{Context, Files};
+pub use context::{Context, Files, Progress, Stage, Watch};
 pub use error::{Error, ErrorKind};
 pub use source::{
     GaitSource, Subject, SwimmerSource, model, warn_if_for_another, warn_if_outdated,

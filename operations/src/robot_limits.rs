@@ -1,9 +1,14 @@
 //! Limits of the robot of a swimmer file: whether it plays a gait, in the words of `robot upload`.
 
 use forecast::{Played, Servos, forecast};
+use gait_optimizer::OptimalGait;
 use link_protocol::MAX_KNOTS;
+use serde::Serialize;
 use swimmer_files::{AnyGait, ServoFile, SwimmerFile};
 use swimmer_model::Model;
+
+use crate::Context;
+use crate::fluid::FluidLoad;
 
 /// Duration of the paper's cycle \[s\], used if none is given.
 pub const PERIOD_S: f64 = 30.0;
@@ -47,4 +52,86 @@ pub fn warning(file: &SwimmerFile, gait: &AnyGait, period: f64) -> Option<String
         "warning: {}, at {period} s a cycle: {reason} ({ADVICE})",
         file.name
     ))
+}
+
+/// Warns if the gait exceeds a limit of the robot of the file, the torque of its servos, or the model in its fluid.
+pub fn warn_if_beyond(file: &SwimmerFile, gait: &AnyGait, period: f64, context: &mut Context) {
+    context.warnings.extend(warning(file, gait, period));
+    let model = Model::new(&file.swimmer).ok();
+    let load = model.and_then(|model| FluidLoad::new(file, &model, gait, period));
+    let warnings = load.iter().flat_map(|load| load.warnings(None));
+    context.warnings.extend(warnings);
+}
+
+/// Warns of the number of gaits that exceed a limit of the robot of the file, with the reason of the first.
+pub(crate) fn warn_of_those_beyond<'a>(
+    file: &SwimmerFile,
+    gaits: impl Iterator<Item = &'a OptimalGait>,
+    context: &mut Context,
+) {
+    if file.servo.is_none() {
+        return;
+    }
+    let (mut count, mut beyond, mut first) = (0, 0, None);
+    for (number, gait) in gaits.enumerate() {
+        count += 1;
+        let curve = AnyGait::from_file(&gait.gait_file(&file.name)).ok();
+        if let Some(reason) = curve.and_then(|curve| exceeded(file, &curve, PERIOD_S)) {
+            beyond += 1;
+            first.get_or_insert((number + 1, reason));
+        }
+    }
+    if let Some((number, reason)) = first {
+        context.warn(format!(
+            "warning: {}, at {PERIOD_S} s a cycle: {beyond} of these {count} gaits go beyond the robot, first no {number}: {reason} ({ADVICE})",
+            file.name
+        ));
+    }
+}
+
+/// Rate limit of each servo \[rad/s\]: the given one (a single one is that of both), or the robot's own for playable gaits.
+/// Returns `None` without either.
+pub fn servo_rates(rates: &[f64], playable: bool, file: &SwimmerFile) -> Option<[f64; 2]> {
+    let own = if playable {
+        file.servo.unwrap_or_default().max_rate
+    } else {
+        f64::INFINITY
+    };
+    let first = rates.first().copied().unwrap_or(f64::INFINITY);
+    let second = rates.get(1).copied().unwrap_or(first);
+    let rates = [first.min(own), second.min(own)];
+    rates.iter().all(|rate| rate.is_finite()).then_some(rates)
+}
+
+/// A gait as fast as the robot of the file plays it.
+#[derive(Debug, Clone, Serialize)]
+pub struct PlayedSpeed {
+    /// Period of the gait, or the shortest that the robot allows for its table, to the next millisecond \[s\].
+    pub period_s: f64,
+    /// Displacement over that period \[m/s\].
+    pub speed_m_per_s: f64,
+    /// Share of the designed speed that table, ticks, pulses and servos cost.
+    pub lost_share: f64,
+}
+
+impl PlayedSpeed {
+    /// The check for a gait that is designed for this period \[s\]. Returns `None` if these servos cannot play it.
+    pub fn new(file: &SwimmerFile, servo: ServoFile, gait: &AnyGait, period: f64) -> Option<Self> {
+        let model = Model::new(&file.swimmer).ok()?;
+        let at = |period| forecast(&model, gait, &played(servo, period)).ok();
+        let shortest = at(period)?.verdict.min_period;
+        let period_s = if shortest > period {
+            (shortest * 1e3).ceil() / 1e3
+        } else {
+            period
+        };
+        let rates = at(period_s)?;
+        let (designed, as_played) = rates.ends()?;
+        let speed_m_per_s = as_played.displacement.norm() / period_s;
+        Some(Self {
+            period_s,
+            speed_m_per_s,
+            lost_share: 1.0 - speed_m_per_s * period / designed.displacement.norm(),
+        })
+    }
 }

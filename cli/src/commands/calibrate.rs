@@ -8,8 +8,7 @@ mod text;
 
 use std::path::{Path, PathBuf};
 
-use calibrate::{CalibrateError, EvidenceOptions};
-use operations::Context;
+use calibrate::EvidenceOptions;
 use operations::calibrate::{Fitted, LEVEL, MiddleLink, RunsOutput, single};
 use swimmer_files::{GaitSpec, PointName};
 
@@ -17,9 +16,10 @@ use self::beyond_fit::BeyondFit;
 pub(crate) use self::beyond_fit::ResultTable;
 use self::text::{FitText, RunsText};
 use crate::arguments::{gait, load_robots_swimmer, seconds};
+use crate::context::perform;
 use crate::failure::{Failure, Outcome};
 use crate::new_folder::NewFolder;
-use crate::output::{Output, asides};
+use crate::output::Output;
 use crate::progress::Stages;
 use crate::recording::Recording;
 
@@ -90,10 +90,7 @@ const WRITING: f64 = 0.5;
 /// # Errors
 /// As reading and fitting.
 pub(crate) fn fit_campaign(path: &Path, level: f64) -> Outcome<Fitted> {
-    let mut context = Context::on_disk();
-    let fitted = Fitted::load(path, level, &mut context);
-    asides(&context);
-    Ok(fitted?)
+    perform(|context| Fitted::load(path, level, context))
 }
 
 impl Calibrate {
@@ -178,12 +175,6 @@ impl Calibrate {
         };
         output.rendered(&runs, &RunsText(&runs));
         Ok(())
-    }
-}
-
-impl From<CalibrateError> for Failure {
-    fn from(error: CalibrateError) -> Self {
-        operations::Error::from(error).into()
     }
 }
 

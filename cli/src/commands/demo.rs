@@ -13,7 +13,10 @@ use calibrate::{PredictedCycle, TrackOptions, predict};
 use gait_optimizer::{Bounds, DisplacementProblem, OptimalGait, displacement};
 use host_link::LinkError;
 use link_protocol::Refusal;
+use operations::ErrorKind;
 use operations::calibrate::{Fitted, MiddleLink, Run, single};
+use operations::optimize::searched;
+use operations::robot_limits::PERIOD_S;
 use swimmer_files::{
     AnyGait, Campaign, GaitSpec, Provenance, ServoFile, SwimmerFile, write_atomically,
 };
@@ -30,8 +33,6 @@ use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
 use crate::new_folder::NewFolder;
 use crate::output::Output;
-use crate::own_robot::PERIOD_S;
-use crate::playable::searched;
 use crate::progress::Progress;
 use crate::report;
 use crate::virtual_robot::{Carrier, EmulatedBoard, VirtualLine};
@@ -317,12 +318,12 @@ impl<'a> Round<'a> {
             Ok(displacement(&DisplacementProblem { bounds, ..free })?)
         };
         let best =
-            searched((fitted, true), within, |gait| gait, search).map_err(
-                |failure| match failure {
-                    Failure::Tried(_) => Refused::Here(failure),
-                    failure => Refused::Everywhere(failure),
-                },
-            )?;
+            searched(fitted, true, within, |gait| gait, search).map_err(|error| {
+                match error.kind {
+                    ErrorKind::Failed => Refused::Here(error.into()),
+                    ErrorKind::BadInput => Refused::Everywhere(error.into()),
+                }
+            })?;
         let gait = best.gait().map_err(|error| {
             Refused::Everywhere(Failure::Tried(format!(
                 "the optimised gait cannot be swum: {error}"

@@ -1,12 +1,11 @@
 //! `swimmer tracks`: what a tracking file holds, without fitting.
 
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use calibrate::{TrackError, TrackSurvey, survey_file};
-use serde::Serialize;
+use calibrate::{TrackSurvey, survey_file};
 
-use crate::failure::{Failure, Outcome};
+use crate::failure::Outcome;
 use crate::output::Output;
 use crate::quantity::{Rows, Table};
 use crate::recording::Recording;
@@ -20,17 +19,15 @@ pub(crate) struct Tracks {
     recording: Recording,
 }
 
-#[derive(Debug, Serialize)]
-struct TracksOutput {
-    #[serde(skip)]
-    file: String,
-    #[serde(flatten)]
-    survey: TrackSurvey,
+/// Survey of a file as text.
+struct Text<'a> {
+    file: &'a Path,
+    survey: &'a TrackSurvey,
 }
 
-impl fmt::Display for TracksOutput {
+impl fmt::Display for Text<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let survey = &self.survey;
+        let survey = self.survey;
         let rate = if survey.rate_hz > 0.0 {
             format!("{} Hz", survey.rate_hz)
         } else {
@@ -51,7 +48,7 @@ impl fmt::Display for TracksOutput {
                 point.longest_gap.to_string(),
             ]);
         }
-        write!(f, "{}\n{rows}\n\n{table}", self.file)?;
+        write!(f, "{}\n{rows}\n\n{table}", self.file.display())?;
         survey
             .warnings
             .iter()
@@ -60,20 +57,14 @@ impl fmt::Display for TracksOutput {
 }
 
 impl Tracks {
-    /// Reads the file and answers.
+    /// Surveys the file.
     pub(crate) fn run(self, output: Output) -> Outcome {
         let survey = survey_file(&self.file, &self.recording.options())?;
-        output.print(&TracksOutput {
-            file: self.file.display().to_string(),
-            survey,
-        });
+        let text = Text {
+            file: &self.file,
+            survey: &survey,
+        };
+        output.rendered(&survey, &text);
         Ok(())
-    }
-}
-
-impl From<TrackError> for Failure {
-    /// A tracking file that cannot be read is bad input, whatever is wrong with it.
-    fn from(error: TrackError) -> Self {
-        Self::bad_input(&error)
     }
 }

@@ -56,7 +56,7 @@ mod tests {
         let found = output_of(
             &mut lab,
             "optimize",
-            &json!({ "swimmer": swimmer, "what": "displacement" }),
+            &json!({ "swimmer": swimmer, "objective": "displacement" }),
         );
         let x = found["displacement_over_length"].as_f64().unwrap();
         assert!((x - 0.103_532_24).abs() < 1e-9, "{x}");

@@ -6,33 +6,36 @@ use std::path::PathBuf;
 use gait_optimizer::OptimalGait;
 
 use super::picture;
-use crate::document::Document;
 use crate::failure::{Failure, Outcome};
 use crate::new_folder::NewFolder;
 
-/// Writes the gaits and a picture of them into the folder, if there is one. Adds the path of each gait to its keys and that of
-/// the picture to the text. Returns the path of the picture.
-pub(super) fn fill<'a>(
-    folder: Option<NewFolder>,
-    (name, title): (&str, &str),
-    gaits: impl Iterator<Item = (&'a OptimalGait, String)>,
-    keys: &mut [Document],
-    answer: &mut Document,
-) -> Outcome<Option<PathBuf>> {
-    let Some(folder) = folder else {
-        return Ok(None);
-    };
-    let gaits: Vec<_> = gaits.collect();
-    for (number, ((gait, _), keys)) in gaits.iter().zip(keys).enumerate() {
+/// Gait of an atlas.
+pub(super) struct Entry<'a> {
+    pub(super) gait: &'a OptimalGait,
+    /// Value in the legend.
+    pub(super) value: String,
+    /// Place for the path of its file.
+    pub(super) path: &'a mut Option<PathBuf>,
+}
+
+/// Writes the gaits of a swimmer of this name and a picture of them into the folder. Returns the path of the picture.
+pub(super) fn fill(
+    folder: NewFolder,
+    name: &str,
+    title: String,
+    entries: Vec<Entry<'_>>,
+) -> Outcome<PathBuf> {
+    let mut gaits = Vec::with_capacity(entries.len());
+    for (number, Entry { gait, value, path }) in entries.into_iter().enumerate() {
         let file = format!("{:02}.gait", number + 1);
         gait.gait_file(name).save(&folder.draft().join(&file))?;
-        keys.key("gait", folder.place().join(&file));
+        *path = Some(folder.place().join(&file));
+        gaits.push((gait, value));
     }
     let path = folder.draft().join("atlas.svg");
-    fs::write(&path, picture::svg(title.to_owned(), &gaits)?)
+    fs::write(&path, picture::svg(title, &gaits)?)
         .map_err(|error| Failure::Tried(format!("cannot write {}: {error}", path.display())))?;
     let picture = folder.place().join("atlas.svg");
     folder.publish()?;
-    answer.line(format!("  drawn in {}", picture.display()));
-    Ok(Some(picture))
+    Ok(picture)
 }

@@ -1,18 +1,16 @@
 //! `swimmer optimize displacement`: the gait of most displacement per cycle.
 
-use gait_optimizer::{
-    DisplacementError, DisplacementProblem, Heading, OptimalGait, displacement, robust_displacement,
-};
+use operations::optimize::GaitOutput;
+use operations::optimize::displacement::{self, Output, Request, Sign, Symmetric};
+use operations::{Context, SwimmerSource};
 
-use super::closed::Closed;
-use super::output::{add_quarter, say_if_beyond};
-use super::robust::{Robustly, refused, robust_gait};
+use super::Objective;
+use super::robust::{self, Robustly};
+use super::text::{add_closed, add_gait, add_quarter, titled};
 use super::timing::ServoTiming;
-use super::{Objective, SearchResult, Task};
 use crate::bounds::QuarterBounds;
-use crate::document::Document;
-use crate::failure::{Failure, Outcome};
-use crate::playable::searched;
+use crate::failure::Outcome;
+use crate::quantity::Rows;
 
 /// Find the simple gait of most displacement per cycle by the maximum principle, with its certificate
 ///
@@ -25,7 +23,7 @@ pub(crate) struct Displacement {
     bounds: QuarterBounds,
     /// The sign of X, run counter-clockwise: + or -; the farther of both, swum forwards, unless given
     #[arg(long, value_name = "SIGN", value_parser = sign, allow_hyphen_values = true)]
-    sign: Option<Heading>,
+    sign: Option<Sign>,
     #[command(flatten)]
     robustly: Robustly,
     #[command(flatten)]
@@ -33,67 +31,56 @@ pub(crate) struct Displacement {
 }
 
 impl Objective for Displacement {
-    fn search(&self, task: &Task) -> Outcome<SearchResult> {
-        let problem = DisplacementProblem {
-            bounds: self.bounds.of(&task.file),
-            heading: self.sign,
-            ..DisplacementProblem::new(task.file.swimmer)
+    type Output = Output;
+
+    fn search(&self, swimmer: SwimmerSource, context: &mut Context) -> Outcome<Output> {
+        let request = Request {
+            swimmer,
+            bounds: self.bounds.into(),
+            sign: self.sign,
+            robust: self.robustly.request()?,
+            timing: self.timing.request(),
         };
-        if let Some((uncertainty, over)) = self.robustly.load(&task.file)? {
-            let found = task
-                .timed(|| robust_displacement(&problem, &uncertainty, over))
-                .map_err(|error| refused(error, &self.bounds))?;
-            return robust_gait(task, ("displacement", "X/L"), found, &self.timing);
-        }
-        let is_playable = self.bounds.playable();
-        if !task.file.swimmer.is_symmetric() {
-            if self.sign.is_some() {
-                return Err(Failure::BadInput(
-                    "--sign is that of gaits with the paper's symmetries, and the side links of this swimmer differ: leave it out"
-                        .to_owned(),
-                ));
+        Ok(displacement::run(&request, context)?)
+    }
+
+    fn gait(output: &mut Output) -> &mut GaitOutput {
+        output.gait_mut()
+    }
+
+    fn text(output: &Output) -> String {
+        let mut rows = Rows::default();
+        let name = match output {
+            Output::Robust(output) => return robust::text(output),
+            Output::Closed(output) => {
+                add_closed(&mut rows, &output.curve);
+                &output.name
             }
-            let objective = swimmer_files::Objective::Displacement;
-            let found = Closed::search(task, objective, problem.bounds, is_playable)?;
-            say_if_beyond(task, found.gait());
-            let timed = self.timing.of(task, found.gait())?;
-            let title = format!("{}, a local optimum of displacement", task.file.name);
-            let mut document = Document::new(title);
-            found.add(&mut document, objective);
-            return Ok(SearchResult::gait(document, task, found.gait(), timed));
-        }
-        let search = |bounds| Ok(displacement(&DisplacementProblem { bounds, ..problem })?);
-        let gait = task.timed(|| {
-            let robot = (&task.file, is_playable);
-            searched(robot, problem.bounds, |gait| gait, search)
-        })?;
-        say_if_beyond(task, &gait);
-        let timed = self.timing.of(task, &gait)?;
-        let mut document = Document::new(format!(
-            "{}, a local optimum of displacement",
-            task.file.name
-        ));
-        add_quarter(&mut document, &gait);
-        document
-            .key_if("extremals", gait.extremals)
-            .row("best of", class(&gait, self.sign));
-        Ok(SearchResult::gait(document, task, &gait, timed))
+            Output::Symmetric(output) => {
+                add_quarter(&mut rows, &output.quarter);
+                rows.row("best of", class(output));
+                &output.name
+            }
+        };
+        add_gait(&mut rows, output.gait());
+        titled(&format!("{name}, a local optimum of displacement"), &rows)
     }
 }
 
-/// The class of gaits that this one is the best of.
-fn class(gait: &OptimalGait, sign: Option<Heading>) -> String {
-    let of = match gait.extremals {
+/// The class of gaits in which this one is the best.
+fn class(output: &Symmetric) -> String {
+    let of = match output.extremals {
         None => String::new(),
         Some(1) => "the only extremal found ".to_owned(),
         Some(count) => format!("the {count} extremals found "),
     };
-    let sign_of_x = if (gait.displacement > 0.0) == gait.is_clockwise() {
+    let is_clockwise = output.quarter.clockwise == Some(true);
+    let sign_of_x = if (output.quarter.displacement_m > 0.0) == is_clockwise {
         "<"
     } else {
         ">"
     };
-    let both = match sign {
+    let both = match output.sign {
         None => ", the farther sense",
         Some(_) => "",
     };
@@ -103,20 +90,10 @@ fn class(gait: &OptimalGait, sign: Option<Heading>) -> String {
     )
 }
 
-fn sign(text: &str) -> Result<Heading, String> {
+fn sign(text: &str) -> Result<Sign, String> {
     match text {
-        "+" => Ok(Heading::Forwards),
-        "-" => Ok(Heading::Backwards),
+        "+" => Ok(Sign::Plus),
+        "-" => Ok(Sign::Minus),
         _ => Err("write + or -".to_owned()),
-    }
-}
-
-impl From<DisplacementError> for Failure {
-    /// An invalid problem is bad input; one without an optimum was tried.
-    fn from(error: DisplacementError) -> Self {
-        match error {
-            DisplacementError::Problem(_) => Self::bad_input(&error),
-            _ => Self::tried_with_details(&error, error.details()),
-        }
     }
 }

@@ -1,26 +1,18 @@
 //! `swimmer optimize efficiency`: the gaits of most Lighthill efficiency.
 
 use clap::ValueEnum;
-use collocation::CollocationError;
-use gait_optimizer::{
-    Branch, EfficiencyError, EfficiencyProblem, Method, OptimalGait, efficiency, robust_efficiency,
-};
-use swimmer_files::Bounds;
+use operations::optimize::efficiency::{self, Method, Optimum, Output, Request, Symmetric};
+use operations::optimize::{EfficiencyFigures, GaitOutput};
+use operations::{Context, SwimmerSource};
 
-use super::closed::Closed;
-use super::output::{add_quarter, say_if_beyond};
-use super::robust::{Robustly, refused, robust_gait};
-use super::timing::{ServoTiming, Timed};
-use super::{Objective, SearchResult, Task};
+use super::Objective;
+use super::robust::{self, Robustly};
+use super::text::{add_closed, add_gait, add_quarter, titled};
+use super::timing::ServoTiming;
 use crate::bounds::CycleBounds;
-use crate::document::Document;
-use crate::failure::{Failure, Outcome};
+use crate::failure::Outcome;
 use crate::output::verbose;
-use crate::playable::searched;
-use crate::quantity;
-
-/// Default order of a robust gait's series.
-const ROBUST_ORDER: usize = 6;
+use crate::quantity::{self, Rows};
 
 /// Find a gait of most Lighthill efficiency by the maximum principle, with its certificate
 ///
@@ -60,189 +52,81 @@ enum How {
 }
 
 impl Objective for Efficiency {
-    fn search(&self, task: &Task) -> Outcome<SearchResult> {
-        let branch = match self.gait {
-            Which::Small => Branch::Small,
-            Which::Large => Branch::Large,
-        };
-        let problem = EfficiencyProblem {
+    type Output = Output;
+
+    fn search(&self, swimmer: SwimmerSource, context: &mut Context) -> Outcome<Output> {
+        let request = Request {
+            swimmer,
+            optimum: match self.gait {
+                Which::Small => Optimum::Small,
+                Which::Large => Optimum::Large,
+            },
             method: match self.method {
-                How::Auto | How::Collocation => Method::Auto,
+                How::Auto => Method::Auto,
                 How::Fourier => Method::Fourier,
+                How::Collocation => Method::Collocation,
                 How::Shooting => Method::Shooting,
             },
-            bounds: self.bounds.of(&task.file),
-            ..EfficiencyProblem::new(task.file.swimmer, branch)
+            bounds: self.bounds.into(),
+            robust: self.robustly.request()?,
+            order: self.order,
+            timing: self.timing.request(),
         };
-        if let Some((uncertainty, over)) = self.robustly.load(&task.file)? {
-            let order = (branch, self.order.unwrap_or(ROBUST_ORDER));
-            let (swimmer, bounds) = (&problem.swimmer, &problem.bounds);
-            let found = task
-                .timed(|| robust_efficiency(swimmer, order, bounds, &uncertainty, over))
-                .map_err(|error| refused(error, &self.bounds))?;
-            return robust_gait(task, ("efficiency", "ξ"), found, &self.timing);
-        }
-        if self.order.is_some() {
-            return Err(Failure::BadInput(
-                "--order is that of a robust gait's Fourier series: give --robust FIT.json or --gain LOW HIGH"
-                    .to_owned(),
-            ));
-        }
-        if !task.file.swimmer.is_symmetric() {
-            return self.without_symmetry(task, problem.bounds);
-        }
-        let search = |bounds| {
-            let problem = EfficiencyProblem { bounds, ..problem };
-            match self.method {
-                How::Collocation => collocation::efficiency(&problem).map_err(Failure::from),
-                How::Auto | How::Fourier | How::Shooting => Ok(efficiency(&problem)?),
+        Ok(efficiency::run(&request, context)?)
+    }
+
+    fn gait(output: &mut Output) -> &mut GaitOutput {
+        output.gait_mut()
+    }
+
+    fn text(output: &Output) -> String {
+        let mut rows = Rows::default();
+        let name = match output {
+            Output::Robust(output) => return robust::text(output),
+            Output::Closed(output) => {
+                rows.row("efficiency ξ", format!("{:.12}", output.efficiency));
+                add_closed(&mut rows, &output.curve);
+                &output.name
+            }
+            Output::Symmetric(output) => {
+                add_symmetric(&mut rows, output);
+                &output.name
             }
         };
-        let robot = (&task.file, self.bounds.playable());
-        let gait = task.timed(|| searched(robot, problem.bounds, |gait| gait, search))?;
-        say_if_beyond(task, &gait);
-        let timed = self.timing.of(task, &gait)?;
-        let document = document_of(&task.file.name, &gait, timed.as_ref());
-        Ok(SearchResult::gait(document, task, &gait, timed))
+        add_gait(&mut rows, output.gait());
+        titled(&format!("{name}, a local optimum of efficiency"), &rows)
     }
 }
 
-impl Efficiency {
-    /// Best gait of the closed-curve search, for side links that differ.
-    fn without_symmetry(&self, task: &Task, bounds: Bounds) -> Outcome<SearchResult> {
-        if matches!(self.gait, Which::Large) || !matches!(self.method, How::Auto) {
-            return Err(Failure::BadInput(
-                "--gait large and --method are of gaits with the paper's symmetries, and the side links of this swimmer differ: \
-                 leave them out"
-                    .to_owned(),
-            ));
-        }
-        let objective = swimmer_files::Objective::Efficiency;
-        let found = Closed::search(task, objective, bounds, self.bounds.playable())?;
-        let gait = found.gait();
-        say_if_beyond(task, gait);
-        let timed = self.timing.of(task, gait)?;
-        let name = &task.file.name;
-        let mut document = Document::new(format!("{name}, a local optimum of efficiency"));
-        let as_written = timed
-            .as_ref()
-            .map_or(gait.efficiency, |timed| timed.efficiency);
-        document
-            .key("efficiency", as_written)
-            .row("efficiency ξ", format!("{as_written:.12}"));
-        found.add(&mut document, objective);
-        Ok(SearchResult::gait(document, task, gait, timed))
+/// Adds a gait with the paper's symmetries.
+fn add_symmetric(rows: &mut Rows, output: &Symmetric) {
+    rows.row("efficiency ξ", format!("{:.12}", output.efficiency));
+    if let Some(constant_power) = output.efficiency_constant_power {
+        rows.row("constant power", format!("ξ = {constant_power:.12}"));
     }
-}
-
-/// Output of a gait: its efficiency is that of the written gait.
-fn document_of(name: &str, gait: &OptimalGait, timed: Option<&Timed>) -> Document {
-    let mut document = Document::new(format!("{name}, a local optimum of efficiency"));
-    let as_written = timed.map_or(gait.efficiency, |timed| timed.efficiency);
-    document
-        .key("efficiency", as_written)
-        .row("efficiency ξ", format!("{as_written:.12}"));
-    if timed.is_some() {
-        document
-            .key("efficiency_constant_power", gait.efficiency)
-            .row("constant power", format!("ξ = {:.12}", gait.efficiency));
+    add_quarter(rows, &output.quarter);
+    if let Some(figures) = output.figures.filter(|_| verbose()) {
+        add_figures(rows, &figures, output);
     }
-    add_quarter(&mut document, gait);
-    if let Some(figures) = gait.efficiency_figures {
-        document
-            // Max-norm of the shooting conditions.
-            .key("residual", figures.residual)
-            .key("power_variation", figures.power_variation)
-            // Method of the initial guess, with that method's own value.
-            .key("method", figures.method)
-            .key_if("direct_efficiency", figures.direct_efficiency);
-        if verbose() {
-            let bound = if figures.residual <= 1e-10 {
-                "at most 1e-10"
-            } else {
-                "above 1e-10"
-            };
-            document
-                .row("residual", bound)
-                .row("method", figures.method);
-        }
-        if let Some(direct) = figures.direct_efficiency.filter(|_| verbose()) {
-            let deviation = quantity::small((direct / gait.efficiency - 1.0).abs());
-            document.row("before polish", format!("ξ off by {deviation}"));
-        }
-    }
-    document.row(
+    rows.row(
         "best of",
         "the gaits with the paper's symmetries, in one neighbourhood; `swimmer atlas --objective efficiency` looks beyond",
     );
-    document
 }
 
-impl From<EfficiencyError> for Failure {
-    /// A problem that makes no sense is bad input; one without an optimum was tried.
-    fn from(error: EfficiencyError) -> Self {
-        if error.is_bad_input() {
-            Self::bad_input(&error)
-        } else {
-            Self::tried_with_details(&error, error.details())
-        }
-    }
-}
-
-impl From<CollocationError> for Failure {
-    fn from(error: CollocationError) -> Self {
-        match error {
-            CollocationError::Polish(error) => error.into(),
-            other => Self::tried(&other),
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::cell::Cell;
-
-    use swimmer_files::AnyGait;
-    use swimmer_model::{Model, Swimmer, Tolerance, swim};
-
-    use super::*;
-    use crate::arguments::load_swimmer;
-
-    /// Servos at their limit cost efficiency, and the reported value is that of the file.
-    #[test]
-    fn the_efficiency_is_that_of_the_gait_that_is_written() {
-        let gait = efficiency(&EfficiencyProblem {
-            bounds: Bounds {
-                max_angle: Some(1.5),
-                ..Bounds::default()
-            },
-            ..EfficiencyProblem::new(Swimmer::purcell(), Branch::Small)
-        })
-        .unwrap();
-        let task = Task {
-            file: load_swimmer("purcell").unwrap(),
-            output: None,
-            seconds: Cell::default(),
-        };
-        let found = |max_rate, period| {
-            let timed = ServoTiming { max_rate, period }.of(&task, &gait).unwrap();
-            let document = document_of("purcell", &gait, timed.as_ref());
-            let found = SearchResult::gait(document, &task, &gait, timed);
-            let file = AnyGait::from_file(&found.gaits[0].1).unwrap();
-            let model = Model::new(&Swimmer::purcell()).unwrap();
-            let swum = swim(&model, &file, &Tolerance::default()).efficiency();
-            let keys = serde_json::to_value(&found.document).unwrap();
-            let efficiency = keys["efficiency"].as_f64().unwrap();
-            let untimed = keys.get("efficiency_constant_power").cloned();
-            (efficiency, untimed, swum, found.document.to_string())
-        };
-        let (free, untimed, swum, _) = found(None, None);
-        assert!((free / swum - 1.0).abs() < 1e-6);
-        assert!(untimed.is_none());
-        let (timed, untimed, swum, text) = found(Some(0.5), Some(15.12));
-        assert!((timed / swum - 1.0).abs() < 1e-9, "{swum}");
-        assert!(timed < 0.95 * free);
-        assert_eq!(untimed.unwrap().as_f64(), Some(gait.efficiency));
-        assert!(text.contains(&format!("{timed:.12}")));
+/// Adds details for experts.
+fn add_figures(rows: &mut Rows, figures: &EfficiencyFigures, output: &Symmetric) {
+    let bound = if figures.residual.is_some_and(|residual| residual <= 1e-10) {
+        "at most 1e-10"
+    } else {
+        "above 1e-10"
+    };
+    rows.row("residual", bound).row("method", figures.method);
+    if let Some(direct) = figures.direct_efficiency {
+        let polished = output
+            .efficiency_constant_power
+            .unwrap_or(output.efficiency);
+        let deviation = quantity::small((direct / polished - 1.0).abs());
+        rows.row("before polish", format!("ξ off by {deviation}"));
     }
 }

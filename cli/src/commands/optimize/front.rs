@@ -4,10 +4,9 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use gait_optimizer::{Fastest, Front};
-use swimmer_files::{SwimmerFile, write_atomically};
+use swimmer_files::write_atomically;
 
 use crate::csv_text::csv_text;
-use crate::document::{Document, object};
 use crate::failure::Outcome;
 use crate::report::chart::{Chart, INK, MEASURED, PREDICTED, Point, Series};
 
@@ -39,32 +38,13 @@ impl FromStr for FrontFile {
 }
 
 impl FrontFile {
-    /// Writes the front of a swimmer, and adds that to the answer.
-    pub(super) fn write(
-        &self,
-        front: &Front,
-        file: &SwimmerFile,
-        answer: &mut Document,
-    ) -> Outcome {
-        let length = file.swimmer.total_length();
+    /// Writes the front of a swimmer of this name and total length \[m\].
+    pub(super) fn write(&self, front: &Front, name: &str, length: f64) -> Outcome {
         let text = match self.form {
-            Form::Figure => figure(front, &file.name, length).svg()?,
+            Form::Figure => figure(front, name, length).svg()?,
             Form::Table => table(front, length)?,
         };
-        write_atomically(&self.path, text.as_bytes())?;
-        // Number of periods with a farthest gait, and number of all periods.
-        let (told, periods) = (front.farthest.iter().flatten().count(), front.periods.len());
-        let path = self.path.display();
-        answer
-            .key(
-                "front",
-                object! {"file": self.path.clone(), "periods": periods, "told": told},
-            )
-            .row(
-                "front",
-                format!("{path}: the farthest gait in {told} of {periods} periods"),
-            );
-        Ok(())
+        Ok(write_atomically(&self.path, text.as_bytes())?)
     }
 }
 
@@ -115,11 +95,11 @@ fn figure(front: &Front, name: &str, length: f64) -> Chart {
         color: MEASURED,
         radius: 3.0,
     });
-    let told = front.periods.iter().zip(&front.farthest);
-    let told: Vec<_> = told
+    let known = front.periods.iter().zip(&front.farthest);
+    let known: Vec<_> = known
         .filter_map(|(period, gait)| Some((period, gait.as_ref()?)))
         .collect();
-    series.extend(told.iter().step_by(4).map(|(period, gait)| Series::Word {
+    series.extend(known.iter().step_by(4).map(|(period, gait)| Series::Word {
         at: point(gait),
         text: format!("{period:.2} s"),
         color: INK,

@@ -1,15 +1,14 @@
 //! `swimmer optimize sideways`: the gait that moves most across its heading, without turning.
 
-use gait_optimizer::{SidewaysError, SidewaysProblem, sideways};
+use operations::optimize::GaitOutput;
+use operations::optimize::sideways::{self, Output, Request};
+use operations::{Context, SwimmerSource};
 
-use super::output::say_if_beyond;
-use super::{Objective, SearchResult, Task};
+use super::Objective;
+use super::text::{add_gait, titled};
 use crate::bounds::CycleBounds;
-use crate::document::Document;
-use crate::failure::{Failure, Outcome};
-use crate::playable::searched;
-use crate::quantity;
-use crate::threads;
+use crate::failure::Outcome;
+use crate::quantity::{self, Rows};
 
 /// Find the simple closed gait of most displacement across the heading at its first sample, without net rotation
 ///
@@ -25,65 +24,40 @@ pub(crate) struct Sideways {
 impl Objective for Sideways {
     const WRITES: &'static str = "Write the gait, at constant power, as a gait file";
 
-    fn search(&self, task: &Task) -> Outcome<SearchResult> {
-        let problem = SidewaysProblem {
-            bounds: self.bounds.of(&task.file),
-            threads: threads::available(),
-            ..SidewaysProblem::new(task.file.swimmer)
-        };
-        let robot = (&task.file, self.bounds.playable());
-        let found = task.watched("looking for loops", |watch| {
-            let search = |bounds| Ok(sideways(&SidewaysProblem { bounds, ..problem }, watch)?);
-            searched(
-                robot,
-                problem.bounds,
-                |found: &gait_optimizer::Sideways| &found.gait,
-                search,
-            )
-        })?;
-        let gait = &found.gait;
-        say_if_beyond(task, gait);
+    type Output = Output;
+
+    fn search(&self, swimmer: SwimmerSource, context: &mut Context) -> Outcome<Output> {
+        let bounds = self.bounds.into();
+        Ok(sideways::run(&Request { swimmer, bounds }, context)?)
+    }
+
+    fn gait(output: &mut Output) -> &mut GaitOutput {
+        &mut output.gait
+    }
+
+    fn text(output: &Output) -> String {
         let signed = |value: f64| (value * 1e9).round() / 1e9 + 0.0;
-        let mut document = Document::new(format!(
-            "{}, a local optimum of displacement sideways",
-            task.file.name
-        ));
-        document
-            // Across the heading at the first sample, positive, and along it.
-            .key("lateral_over_length", found.lateral_over_length)
-            .key("displacement_over_length", gait.displacement_over_length)
-            .key("rotation_rad", gait.rotation)
-            .key("heading_rad", gait.heading())
-            .key("loops", found.loops)
-            .key("arcs", gait.arcs.clone())
-            .row(
-                "sideways",
-                format!("|Y|/L = {:.9}", found.lateral_over_length),
-            )
-            .row(
-                "along the heading",
-                format!("X/L = {:.9}", signed(gait.displacement_over_length)),
-            )
-            .row("net rotation", quantity::angle(gait.rotation))
-            .row("arcs", gait.arcs.len().to_string())
-            .row(
+        let mut rows = Rows::default();
+        rows.row(
+            "sideways",
+            format!("|Y|/L = {:.9}", output.lateral_over_length),
+        )
+        .row(
+            "along the heading",
+            format!("X/L = {:.9}", signed(output.displacement_over_length)),
+        )
+        .row("net rotation", quantity::angle(output.rotation_rad))
+        .row("arcs", output.arcs.len().to_string())
+        .row(
             "best of",
             format!(
                 "the {} simple loops found, each with its best first sample; `swimmer optimize displacement` finds gaits of \
                  other kinds",
-                found.loops
+                output.loops
             ),
         );
-        Ok(SearchResult::gait(document, task, gait, None))
-    }
-}
-
-impl From<SidewaysError> for Failure {
-    /// A problem that makes no sense is bad input; one without an optimum was tried.
-    fn from(error: SidewaysError) -> Self {
-        match error {
-            SidewaysError::Problem(_) => Self::bad_input(&error),
-            SidewaysError::NoOptimum { .. } => Self::tried(&error),
-        }
+        add_gait(&mut rows, &output.gait);
+        let title = format!("{}, a local optimum of displacement sideways", output.name);
+        titled(&title, &rows)
     }
 }

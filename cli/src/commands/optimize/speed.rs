@@ -1,23 +1,18 @@
 //! `swimmer optimize speed`: the fastest gait that servos can play.
 
-use gait_optimizer::{
-    Fastest, HeadingRule, SpeedError, SpeedProblem, fastest, front, robust_speed,
-};
-use swimmer_files::{ServoFile, SwimmerFile};
+use operations::optimize::GaitOutput;
+use operations::optimize::speed::{self, FrontOutput, Output, Request};
+use operations::{Context, SwimmerSource};
 
+use super::Objective;
 use super::front::FrontFile;
-use super::output::add_arcs;
-use super::pace::{SEARCHING, add_as_played, at_pace};
-use super::robust::{Robustly, add_robustness, as_written, refused};
-use super::{Objective, SearchResult, Task};
+use super::robust::{Robustly, add_robustness};
+use super::text::{add_arcs, add_gait, titled};
 use crate::arguments::{rate, seconds};
 use crate::bounds::CycleBounds;
-use crate::document::Document;
-use crate::failure::{Failure, Outcome};
+use crate::failure::Outcome;
 use crate::new_file::may_be_written;
-use crate::own_robot::servo_rates;
-use crate::quantity;
-use crate::threads;
+use crate::quantity::{self, Rows};
 
 /// Find the fastest gait: most net displacement per unit of time, without net rotation, with servos that turn no faster than a
 /// given rate
@@ -64,137 +59,110 @@ enum Heading {
 impl Objective for Speed {
     const WRITES: &'static str = "Write the gait, timed as it shall run, as a gait file";
 
-    fn search(&self, task: &Task) -> Outcome<SearchResult> {
+    type Output = Output;
+
+    fn search(&self, swimmer: SwimmerSource, context: &mut Context) -> Outcome<Output> {
         if let Some(front) = &self.front {
             may_be_written(&front.path)?;
         }
-        let file = &task.file;
-        let bounds = self.bounds.of(file);
-        let rates = servo_rates(&self.max_rate, self.bounds.playable(), file);
-        let Some(rates) = rates else {
-            return Err(Failure::BadInput(
-                "give --max-rate or --playable".to_owned(),
-            ));
-        };
-        let uncertain = self.robustly.load(file)?;
-        let heading = match self.heading {
-            Heading::Any => HeadingRule::Any,
-            Heading::Forward => HeadingRule::Forward,
-            Heading::Sideways => HeadingRule::Sideways,
-        };
-        let problem = SpeedProblem {
-            bounds,
+        let request = Request {
+            swimmer,
+            max_rate: self.max_rate.clone(),
+            heading: match self.heading {
+                Heading::Any => speed::Heading::Any,
+                Heading::Forward => speed::Heading::Forward,
+                Heading::Sideways => speed::Heading::Sideways,
+            },
             period: self.period,
-            threads: threads::available(),
-            ..SpeedProblem::new(file.swimmer, rates).led(heading)
+            bounds: self.bounds.into(),
+            robust: self.robustly.request()?,
+            front: self.front.is_some(),
         };
-        let (mut farthest, mut robustness) = (None, None);
-        let found = task.watched(SEARCHING, |watch| -> Outcome<_> {
-            if let Some((uncertainty, over)) = &uncertain {
-                let found = robust_speed(&problem, uncertainty, *over, watch)
-                    .map_err(|error| refused(error, &self.bounds))?;
-                robustness = Some(found.robustness);
-                Ok(found.fastest)
-            } else if self.front.is_some() {
-                let front = farthest.insert(front(&problem, watch)?);
-                Ok(front.fastest.clone())
-            } else {
-                Ok(problem.watched(watch)?)
-            }
-        })?;
-        let (kind, gait) = match robustness {
-            Some(_) => ("robust fastest", &as_written(&found.gait)),
-            None => ("fastest", &found.gait),
+        let mut output = speed::run(&request, context)?;
+        if let (Some(place), Some(farthest)) = (&self.front, &output.farthest) {
+            place.write(farthest, &output.name, output.length)?;
+            output.front = Some(FrontOutput::new(place.path.clone(), farthest));
+        }
+        Ok(output)
+    }
+
+    fn gait(output: &mut Output) -> &mut GaitOutput {
+        &mut output.gait
+    }
+
+    fn text(output: &Output) -> String {
+        let kind = match output.robust {
+            Some(_) => "robust fastest",
+            None => "fastest",
         };
-        let mut document = document_of(kind, file, &found);
-        if let Some(robustness) = &robustness {
-            add_robustness(&mut document, robustness, "|d|/(L T)");
-        }
-        if robustness.is_none() && self.period.is_none() && heading != HeadingRule::Any {
-            add_any_heading(&mut document, &problem, found.speed_over_length)?;
-        }
-        let servo = file
-            .servo
-            .or(self.bounds.playable().then(ServoFile::default));
-        add_as_played(
-            &mut document,
-            file,
-            servo,
-            (gait, found.period - found.rest),
+        let pace = quantity::length(output.speed_m_per_s);
+        let way = quantity::length(output.displacement_m);
+        let title = format!(
+            "{}: the {kind} gait swims {way} in {:.2} s, {pace} a second",
+            output.name, output.period_s
         );
-        if let (Some(place), Some(farthest)) = (&self.front, &farthest) {
-            place.write(farthest, file, &mut document)?;
-        }
-        Ok(SearchResult::gait(document, task, gait, None))
-    }
-}
-
-/// Adds the speed of the fastest gait of any heading to the output of a gait with a prescribed heading.
-fn add_any_heading(document: &mut Document, led: &SpeedProblem, speed: f64) -> Outcome<()> {
-    let any = fastest(&led.led(HeadingRule::Any))?.speed_over_length;
-    document.key("any_heading_speed_over_length_per_s", any);
-    let more = any / speed - 1.0;
-    if more > 1e-6 {
-        let bound = format!(
-            "{:.2} % faster: long cycles that tack come near it",
-            more * 100.0
-        );
-        document.row("any heading", bound);
-    }
-    Ok(())
-}
-
-/// Output of a gait of this kind, without robustness, servos and front.
-fn document_of(kind: &str, file: &SwimmerFile, found: &Fastest) -> Document {
-    let speed = found.speed_over_length;
-    let way = found.distance_over_length;
-    let mut document = at_pace(kind, file, (speed, way), found.period);
-    document
-        // Of the displacement against the cycle's mean heading.
-        .key("heading_rad", found.heading)
-        .key("rotation_rad", found.gait.rotation)
+        let mut rows = Rows::default();
+        rows.row(
+            "speed",
+            format!(
+                "{pace} a second   |d|/(L T) = {:.10} 1/s",
+                output.speed_over_length_per_s
+            ),
+        )
+        .row(
+            "displacement",
+            format!(
+                "{way} per cycle   |d|/L = {:.10}",
+                output.displacement_over_length
+            ),
+        )
+        .row("period", format!("{:.6} s", output.period_s))
         .row(
             "leads",
-            format!("{} off the mean heading", quantity::angle(found.heading)),
+            format!(
+                "{} off the mean heading",
+                quantity::angle(output.heading_rad)
+            ),
         )
         .row(
             "found",
-            format!("from {} of {} starts", found.found, found.starts),
+            format!("from {} of {} starts", output.found, output.starts),
         );
-    if let Some(moves) = found.gait.optimal_period {
-        document.key("rest_s", found.rest);
-        if found.rest > 0.0 {
-            document.row(
-                "rests",
-                format!("{:.6} s after a cycle of {moves:.6} s", found.rest),
-            );
+        add_search(&mut rows, output);
+        if let Some(robustness) = &output.robust {
+            add_robustness(&mut rows, robustness);
         }
+        add_play(&mut rows, output);
+        add_gait(&mut rows, &output.gait);
+        titled(&title, &rows)
     }
-    add_arcs(&mut document, &found.gait.arcs);
-    document
-        // Fractions of the period where a servo turns round or stops, and how many a cycle may have.
-        .key("corners", found.gait.corners().to_vec())
-        .key("max_corners", SpeedProblem::MAX_CORNERS)
-        // Closed curves that were started from, and how many led to this gait.
-        .key("starts", found.starts)
-        .key("found", found.found)
-        // Of a certified cycle with more corners, where one is better by more than 1e-6 of it.
-        .key("longer_speed_over_length_per_s", found.longer)
-        // Of a faster chain of arcs that failed its certificate.
-        .key("uncertified_speed_over_length_per_s", found.uncertified);
+}
+
+/// Adds rest, arcs, and better gaits outside the class.
+fn add_search(rows: &mut Rows, output: &Output) {
+    if let (Some(rest), Some(moves)) = (output.rest_s, output.motion_s)
+        && rest > 0.0
+    {
+        rows.row(
+            "rests",
+            format!("{rest:.6} s after a cycle of {moves:.6} s"),
+        );
+    }
+    add_arcs(rows, &output.arcs);
+    let speed = output.speed_over_length_per_s;
     let better = |other: f64| format!("{:.4} % faster", (other / speed - 1.0) * 100.0);
-    if let Some(longer) = found.longer {
-        document.row(
+    if let Some(longer) = output.longer_speed_over_length_per_s {
+        rows.row(
             "longer cycle",
             format!(
                 "one of more than {} corners is {}",
-                SpeedProblem::MAX_CORNERS,
+                output.max_corners,
                 better(longer)
             ),
         );
     }
-    if let Some(uncertified) = found.uncertified {
-        document.row(
+    if let Some(uncertified) = output.uncertified_speed_over_length_per_s {
+        rows.row(
             "not certified",
             format!(
                 "another chain of arcs is {}, but meets not all conditions",
@@ -202,15 +170,42 @@ fn document_of(kind: &str, file: &SwimmerFile, found: &Fastest) -> Document {
             ),
         );
     }
-    document
 }
 
-impl From<SpeedError> for Failure {
-    /// A problem that makes no sense is bad input; one without a certified gait was tried.
-    fn from(error: SpeedError) -> Self {
-        match error {
-            SpeedError::NoGait { .. } | SpeedError::Immobile(_) => Self::tried(&error),
-            _ => Self::bad_input(&error),
+/// Adds the fastest gait of any heading, the play on the robot, and the file of the farthest gaits.
+fn add_play(rows: &mut Rows, output: &Output) {
+    if let Some(any) = output.any_heading_speed_over_length_per_s {
+        let more = any / output.speed_over_length_per_s - 1.0;
+        if more > 1e-6 {
+            rows.row(
+                "any heading",
+                format!(
+                    "{:.2} % faster: long cycles that tack come near it",
+                    more * 100.0
+                ),
+            );
         }
+    }
+    if let Some(played) = &output.played {
+        rows.row(
+            "as played",
+            format!(
+                "{} a second, a cycle in {:.3} s: table, ticks and servos take {:.2} %",
+                quantity::length(played.speed_m_per_s),
+                played.period_s,
+                played.lost_share * 100.0
+            ),
+        );
+    }
+    if let Some(front) = &output.front {
+        rows.row(
+            "front",
+            format!(
+                "{}: the farthest gait in {} of {} periods",
+                front.file.display(),
+                front.told,
+                front.periods
+            ),
+        );
     }
 }

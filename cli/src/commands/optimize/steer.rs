@@ -1,20 +1,20 @@
 //! `swimmer optimize steer`: the fastest gaits to steer by, from one common shape.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use gait_optimizer::{Joined, SpeedProblem, SteerProblem, Steering, steer};
+use gait_optimizer::Steering;
+use operations::SwimmerSource;
+pub(crate) use operations::optimize::steer::named;
+use operations::optimize::steer::{self, JoinedOutput, Options, Request};
 use swimmer_files::SwimmerFile;
-use swimmer_model::Pose;
 
-use super::{Objective, SearchResult, Task};
 use crate::arguments::{angle, rate};
 use crate::bounds::CycleBounds;
-use crate::document::Document;
-use crate::failure::{Failure, Outcome};
-use crate::own_robot::servo_rates;
-use crate::progress::Progress;
-use crate::quantity;
-use crate::threads;
+use crate::context::perform;
+use crate::failure::Outcome;
+use crate::new_folder::NewFolder;
+use crate::output::Output;
+use crate::quantity::{self, Rows};
 
 /// Find the fastest gaits forward, backward, to either side and round, all through one common shape at which they join
 ///
@@ -49,49 +49,31 @@ impl Steer {
         }
     }
 
-    /// The rates of the servos \[rad/s\].
-    ///
-    /// # Errors
-    /// [`Failure::BadInput`] where there is none.
-    pub(crate) fn rates(&self, file: &SwimmerFile) -> Outcome<[f64; 2]> {
-        servo_rates(&self.max_rate, self.bounds.playable(), file)
-            .ok_or_else(|| Failure::BadInput("give --max-rate or --playable".to_owned()))
+    /// Options of the search.
+    fn options(&self) -> Options {
+        Options {
+            max_rate: self.max_rate.clone(),
+            bounds: self.bounds.into(),
+            shape: self.shape,
+        }
     }
 
-    /// The gaits.
+    /// Rates of the servos \[rad/s\].
+    ///
+    /// # Errors
+    /// No rate is given, and the gaits need not be playable.
+    pub(crate) fn rates(&self, file: &SwimmerFile) -> Outcome<[f64; 2]> {
+        Ok(self.options().rates(file)?)
+    }
+
+    /// Finds the gaits.
     ///
     /// # Errors
     /// Those of the search.
     pub(crate) fn find(&self, file: &SwimmerFile) -> Outcome<Steering> {
-        let progress = Progress::with_share("looking for gaits that join");
-        let problem = SteerProblem {
-            of: SpeedProblem {
-                bounds: self.bounds.of(file),
-                threads: threads::available(),
-                ..SpeedProblem::new(file.swimmer, self.rates(file)?)
-            },
-            shape: self.shape,
-        };
-        Ok(steer(&problem, &|share| progress.at_share(share))?)
+        let (steering, _) = perform(|context| steer::find(file, &self.options(), context))?;
+        Ok(steering)
     }
-}
-
-/// The gaits with their names: each kind, and the same run backwards.
-pub(crate) fn named(steering: &Steering) -> [(&'static str, &Joined, bool); 6] {
-    let Steering {
-        forward,
-        left,
-        turn,
-        ..
-    } = steering;
-    [
-        ("forward", forward, false),
-        ("backward", forward, true),
-        ("left", left, false),
-        ("right", left, true),
-        ("turn-left", turn, false),
-        ("turn-right", turn, true),
-    ]
 }
 
 /// Searches the gaits that join at the straight shape, and writes them into a folder.
@@ -107,75 +89,66 @@ pub(crate) fn write_straight(file: &SwimmerFile, folder: &Path) -> Outcome {
     Ok(())
 }
 
-impl Objective for Steer {
-    const FOLDER: bool = true;
-    const WRITES: &'static str = "Write the six gaits into this folder";
+// Its help is that of the options.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Search {
+    /// A preset that `swimmer swimmers` lists, or a swimmer file
+    #[arg(long, value_name = "SWIMMER")]
+    swimmer: String,
+    #[command(flatten)]
+    steer: Steer,
+    /// Write the six gaits into this folder
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+}
 
-    fn search(&self, task: &Task) -> Outcome<SearchResult> {
-        let file = &task.file;
-        let steering = task.timed(|| self.find(file))?;
-        let [one, two] = steering.shape.map(quantity::angle);
-        let mut document = Document::new(format!(
-            "{}: six gaits that join at ({one}, {two}), the best of {} shapes",
-            file.name, steering.shapes
-        ));
-        let gaits = named(&steering).map(|(name, joined, backwards)| {
-            let file_name = format!("{name}.gait");
-            let mut gait = Document::default();
-            add(&mut gait, &mut document, file, (name, joined, backwards));
-            gait.key_if("gait", task.output.map(|folder| folder.join(&file_name)));
-            (gait, (file_name, joined.gait_file(&file.name, backwards)))
-        });
-        let (documents, gaits): (Vec<_>, Vec<_>) = gaits.into_iter().unzip();
-        document
-            // Where the gaits join, and how many shapes were tried.
-            .key("shape_rad", steering.shape)
-            .key("shapes", steering.shapes)
-            .key("gaits", documents)
-            .key("seconds", task.seconds.get());
-        Ok(SearchResult { document, gaits })
+impl Search {
+    pub(super) fn run(self, output: Output) -> Outcome {
+        let folder = self.output.as_deref().map(NewFolder::start).transpose()?;
+        let request = Request {
+            swimmer: SwimmerSource::from(self.swimmer.as_str()),
+            options: self.steer.options(),
+        };
+        let mut found = perform(|context| steer::run(&request, context))?;
+        if let Some(folder) = folder {
+            for gait in &mut found.gaits {
+                let name = format!("{}.gait", gait.name);
+                gait.file.save(&folder.draft().join(&name))?;
+                gait.gait = Some(folder.place().join(name));
+            }
+            folder.publish()?;
+        }
+        output.rendered(&found, &text(&found));
+        Ok(())
     }
 }
 
-/// Adds one of the six, and its line to the answer.
-fn add(
-    gait: &mut Document,
-    document: &mut Document,
-    file: &SwimmerFile,
-    (name, joined, backwards): (&'static str, &Joined, bool),
-) {
-    let length = file.swimmer.total_length();
-    let turns = name.starts_with("turn");
-    let [x, y, theta] = joined.net;
-    let there = Pose::new(x, y, theta);
-    let net = if backwards { there.inverse() } else { there };
-    let certificate = &joined.gait.certificate;
-    gait.key("name", name)
-        // Motion of a cycle in the frame of the middle link at the common shape.
-        .key("x_m", net.x * length)
-        .key("y_m", net.y * length)
-        .key("rotation_rad", net.theta)
-        .key("period_s", joined.period)
-        // |d|/(L T), or of those that turn |Δθ|/T.
-        .key("speed_over_length_per_s", (!turns).then_some(joined.rate))
-        .key("rotation_rad_per_s", turns.then_some(joined.rate))
-        // Share of the fastest gait's speed.
-        .key("joining_costs", joined.cost())
-        .key("certificate", certificate.clone());
-    let checks = certificate.checks();
+/// Output as text.
+fn text(output: &steer::Output) -> String {
+    let [one, two] = output.shape_rad.map(quantity::angle);
+    let mut rows = Rows::default();
+    for gait in &output.gaits {
+        rows.row(gait.name, described(gait));
+    }
+    format!(
+        "{}: six gaits that join at ({one}, {two}), the best of {} shapes\n{rows}",
+        output.name, output.shapes
+    )
+}
+
+/// Motion of a gait, and its certificate.
+fn described(gait: &JoinedOutput) -> String {
+    let checks = gait.certificate.checks();
     let verdict = match checks.iter().filter(|check| !check.pass).count() {
         0 => format!("{} conditions hold", checks.len()),
         fails => format!("{fails} of {} conditions fail", checks.len()),
     };
-    document.row(
-        name,
-        format!(
-            "({}, {}, {}) in {:.3} s; joining costs {:.2} %; {verdict}",
-            quantity::length(net.x * length),
-            quantity::length(net.y * length),
-            quantity::angle(net.theta),
-            joined.period,
-            joined.cost() * 100.0
-        ),
-    );
+    format!(
+        "({}, {}, {}) in {:.3} s; joining costs {:.2} %; {verdict}",
+        quantity::length(gait.x_m),
+        quantity::length(gait.y_m),
+        quantity::angle(gait.rotation_rad),
+        gait.period_s,
+        gait.joining_costs * 100.0
+    )
 }

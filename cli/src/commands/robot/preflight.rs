@@ -14,12 +14,11 @@ use swimmer_model::{Links, Model, Pose, Swimmer};
 use twin::is_configured_as;
 
 use super::playing::duration;
-use crate::arguments::{angle, period};
+use crate::arguments::{angle, load_fit, period};
 use operations::played::PlayedCycle;
 
 use crate::commands::simulate::played::played_rows;
 use crate::failure::{Failure, Outcome};
-use crate::fit_file::load_fit;
 use crate::quantity::{self, Rows};
 
 /// Options of the forecast.

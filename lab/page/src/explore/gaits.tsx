@@ -4,6 +4,7 @@ import { activeGait, CIRCLE, edit, editGait, type Gait, OPTIMA, type Optimum, sh
 import { FEWEST, withPoints } from "./handles.tsx";
 import { curveOf, forgetStopped, isCurrent, optima, searching, STOPPED, stopSearch } from "./model.ts";
 import { angle, figure, NAMES } from "./names.ts";
+import type { OptimizeOutput } from "./outputs.ts";
 import { symmetrised } from "./spline.ts";
 
 /** Largest number of control points of a dragged gait. */
@@ -129,11 +130,11 @@ function Searching({ seconds }: { seconds: number }) {
   );
 }
 
-function brief(what: Optimum, result: { displacement_over_length: number; efficiency: number; rotation_rad: number; lateral_over_length: number; speed_over_length_per_s: number | null; certificate: { pass: boolean } }): string {
+function brief(what: Optimum, result: OptimizeOutput): string {
   const mark = result.certificate.pass ? "✓ " : "";
-  if (what === "turning") return `${mark}θ ${angle(result.rotation_rad)}`;
-  if (what === "sideways") return `${mark}Y/L ${figure(result.lateral_over_length, 4)}`;
+  if (what === "turning") return `${mark}θ ${angle(result.rotation_rad ?? 0)}`;
+  if (what === "sideways") return `${mark}Y/L ${figure(result.lateral_over_length ?? 0, 4)}`;
   if (what === "speed") return `${mark}${figure(result.speed_over_length_per_s ?? 0, 5)} L/s`;
   if (what === "displacement") return `${mark}X/L ${figure(result.displacement_over_length, 4)}`;
-  return `${mark}ξ ${figure(result.efficiency, 5)}`;
+  return `${mark}ξ ${figure(result.efficiency ?? 0, 5)}`;
 }

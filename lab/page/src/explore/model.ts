@@ -195,7 +195,19 @@ const wanted = computed(() => {
   const taken = gaits.flatMap((gait) => (gait?.kind === "optimum" ? [gait.what] : []));
   return [...new Set([...overlaid, ...taken])];
 });
-const optimumAsked = (what: Optimum) => JSON.stringify({ swimmer: swimmer.value?.toml, what, bounds: bounds(shown.value) });
+/** Requests of the command `swimmer optimize`, by gait. */
+const OPTIMIZE: Record<Optimum, object> = {
+  displacement: { objective: "displacement" },
+  "efficiency-small": { objective: "efficiency", optimum: "small" },
+  "efficiency-large": { objective: "efficiency", optimum: "large" },
+  turning: { objective: "turning" },
+  sideways: { objective: "sideways" },
+  speed: { objective: "speed" },
+};
+const optimumAsked = (what: Optimum) => {
+  const rates = what === "speed" && swimmer.value ? { max_rate: [swimmer.value.max_rate_rad_s] } : {};
+  return JSON.stringify({ ...OPTIMIZE[what], ...rates, swimmer: swimmer.value?.toml, bounds: bounds(shown.value) });
+};
 /** Present search and its duration in seconds. */
 export const searching = signal<{ what: Optimum; seconds: number } | null>(null);
 /** Reason of a search that was stopped. */

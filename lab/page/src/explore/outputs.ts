@@ -54,15 +54,14 @@ export interface Evidence {
   checks: Check[];
 }
 
+/** Output of `swimmer optimize`, whose keys depend on the objective, with the text of the gait file as `gait`. */
 export interface OptimizeOutput {
   displacement_over_length: number;
-  displacement_m: number;
-  lateral_over_length: number;
-  rotation_rad: number;
-  efficiency: number;
+  lateral_over_length?: number;
+  rotation_rad?: number;
+  efficiency?: number;
+  speed_over_length_per_s?: number;
   certificate: Evidence;
-  period_s: number | null;
-  speed_over_length_per_s: number | null;
   gait: string;
 }
 

@@ -1,12 +1,11 @@
-//! A fit, as `swimmer calibrate` leaves it: what later commands need of it.
+//! Uncertainty that a fit leaves, from the file of `swimmer calibrate`.
 
 use std::path::Path;
 
 use gait_optimizer::Uncertainty;
 use serde::Deserialize;
 
-use crate::failure::{Failure, Outcome};
-use crate::output::aside;
+use crate::{Context, Error, Files};
 
 /// Part of a fit that is read.
 #[derive(Debug, Deserialize)]
@@ -36,13 +35,13 @@ struct Parameter {
 impl FittedParameters {
     /// The uncertainty of the fit, if it includes the servos' gain. The estimate of the gain belongs into the servo map; its
     /// uncertainty remains.
-    fn uncertainty(&self) -> Option<Uncertainty> {
+    fn uncertainty(&self, context: &mut Context) -> Option<Uncertainty> {
         let of = |name: &str| self.parameters.iter().find(|one| one.name == name);
         let (radius, chi, gain) = (of("r_s")?, of("chi")?, of("gain")?);
         let place = |name: &str| self.parameters.iter().position(|one| one.name == name);
         let row = self.correlations.get(place("r_s")?)?;
         if (gain.value - 1.0).abs() > 1e-3 {
-            aside(&format!(
+            context.warn(format!(
                 "warning: the fit says that the servos turn {:.4} times the commanded angle; the design assumes that slope_rad_per_us of the \
                  swimmer file was corrected by this factor",
                 gain.value
@@ -67,23 +66,28 @@ struct Intervals {
     level: f64,
 }
 
-/// Reads what a fit leaves open of `r_s` and χ, and of the servos' gain where that was fitted along.
+/// Reads the uncertainty that a fit leaves of `r_s` and χ, and of the servos' gain if it was fitted too.
 ///
 /// # Errors
-/// [`Failure::BadInput`] with the place in the file.
-pub(crate) fn load_fit(path: &Path) -> Outcome<Uncertainty> {
-    let text = std::fs::read_to_string(path).map_err(|error| {
-        Failure::BadInput(format!("cannot read the fit {}: {error}", path.display()))
-    })?;
+/// The file cannot be read or is invalid; the place in the file is named.
+pub fn load(path: &Path, context: &mut Context) -> Result<Uncertainty, Error> {
+    let cannot = |why: &dyn std::fmt::Display| {
+        Error::refused(format!("cannot read the fit {}: {why}", path.display()))
+    };
+    if context.files == Files::Unavailable {
+        return Err(cannot(&"there is no file system"));
+    }
+    let text = std::fs::read_to_string(path).map_err(|error| cannot(&error))?;
     let fit: Fit = serde_json::from_str(&text).map_err(|error| {
-        Failure::BadInput(format!(
+        Error::refused(format!(
             "{}:{}:{}: {error}; a fit is what swimmer calibrate --json prints",
             path.display(),
             error.line(),
             error.column()
         ))
     })?;
-    let further = fit.further.as_ref().and_then(FittedParameters::uncertainty);
+    let further = fit.further.as_ref();
+    let further = further.and_then(|further| further.uncertainty(context));
     let uncertainty = further.unwrap_or(Uncertainty {
         sphere_radius_interval: fit.intervals.sphere_radius_m,
         chi_interval: fit.intervals.chi,

@@ -1,0 +1,4 @@
+//! Outputs of the operations against independent evaluations.
+
+#[path = "outputs/efficiency.rs"]
+mod efficiency;
