@@ -190,17 +190,25 @@ fn chains(setting: &Setting, starts: &[Vec<Vector2<f64>>], threads: usize) -> Ve
     finished(setting, &groups, threads)
 }
 
-/// Gaits that groups of rough polygons lead to, fastest first, certified or not.
+/// Gaits that groups of rough polygons lead to, fastest first, certified or not. Slow polygons are finished only if none of the
+/// fast ones leads to a gait.
 fn finished(setting: &Setting, groups: &[Group], threads: usize) -> Vec<Polished> {
     /// Groups of rough polygons that are finished.
     const GROUPS: usize = 6;
     let fastest = groups.first().map_or(0.0, Group::speed);
-    let chosen: Vec<_> = groups
-        .iter()
-        .take(GROUPS)
-        .take_while(|group| group.speed() >= HOPELESS * fastest)
-        .flat_map(|group| &group.chosen)
-        .collect();
+    let groups = groups.get(..GROUPS).unwrap_or(groups);
+    let slow = groups.partition_point(|group| group.speed() >= HOPELESS * fastest);
+    let (fast, slow) = groups.split_at(slow);
+    let chains = finished_all(setting, fast, threads);
+    if chains.is_empty() {
+        finished_all(setting, slow, threads)
+    } else {
+        chains
+    }
+}
+
+fn finished_all(setting: &Setting, groups: &[Group], threads: usize) -> Vec<Polished> {
+    let chosen: Vec<_> = groups.iter().flat_map(|group| &group.chosen).collect();
     let finished = in_parallel(
         chosen.len(),
         threads,

@@ -151,3 +151,13 @@ fn a_slower_gait_joins_where_the_fastest_lies_elsewhere() {
 fn a_singular_arc_begins_beside_the_shape() {
     certified_within(Swimmer::robot(), 1.5, [1.19, 0.525], [0.03, 0.02, 0.01]);
 }
+
+/// The bounds of `--playable`: the fastest rough polygons through the straight shape lead to no sideways gait, and slower ones do.
+#[test]
+fn gaits_join_straight_within_the_bounds_of_the_robot() {
+    let mut problem = robot(Some([0.0; 2]));
+    problem.of.bounds = Bounds::within(2.8).apart(0.002_517_375);
+    problem.of.starts = SpeedProblem::STARTS;
+    let steering = steer(&problem, &|_| ()).unwrap();
+    assert!(steering.left.rate > 0.0 && steering.left.cost() < 0.95);
+}
