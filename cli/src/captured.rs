@@ -4,7 +4,7 @@ use std::ffi::OsString;
 
 use clap::Command;
 
-use crate::failure::Failure;
+use crate::failure::{Failure, Outcome};
 use crate::new_folder::with_places;
 use crate::output::{self, Output};
 use crate::{commands, negative_values_joined, parse, reason};
@@ -68,6 +68,32 @@ pub fn run_captured(
             reason: with_places(&failure.to_string()),
             bad_input: matches!(failure, Failure::BadInput(_)),
             notes: captured.asides,
+        }),
+    }
+}
+
+/// Value that a call returns, and its messages.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Noted<T> {
+    /// The value.
+    pub value: T,
+    /// Warnings and notes, each as standard error would show it.
+    pub notes: Vec<String>,
+}
+
+/// Runs a part of a command and collects its messages.
+///
+/// # Errors
+/// [`CapturedFailure`], with the command's own sentence.
+pub(crate) fn noted<T>(work: impl FnOnce() -> Outcome<T>) -> Result<Noted<T>, CapturedFailure> {
+    let (outcome, captured) = output::capture(work);
+    let notes = captured.asides;
+    match outcome {
+        Ok(value) => Ok(Noted { value, notes }),
+        Err(failure) => Err(CapturedFailure {
+            reason: with_places(&failure.to_string()),
+            bad_input: matches!(failure, Failure::BadInput(_)),
+            notes,
         }),
     }
 }

@@ -3,6 +3,7 @@
 //!
 //! A command that holds a robot treats Ctrl-Z the same: a suspended program keeps its port and feeds no lease.
 
+use std::fmt;
 use std::process::exit;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
@@ -31,6 +32,17 @@ static OUTPUT: OnceLock<Output> = OnceLock::new();
 pub(crate) struct Interrupt {
     ended: Arc<AtomicBool>,
     suspended: Arc<AtomicBool>,
+    poll: Option<Poll>,
+}
+
+/// Function of a caller in the same process that reports the wish to end, such as a signal of its own.
+#[derive(Clone)]
+struct Poll(Arc<dyn Fn() -> bool + Send + Sync>);
+
+impl fmt::Debug for Poll {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Poll")
+    }
 }
 
 impl Interrupt {
@@ -69,14 +81,36 @@ impl Interrupt {
         Ok(interrupt)
     }
 
+    /// For a caller in the same process, which keeps its own Ctrl-C: `poll` is called while a command waits, and ends it by `true`.
+    pub(crate) fn polled(poll: impl Fn() -> bool + Send + Sync + 'static) -> Self {
+        Self {
+            poll: Some(Poll(Arc::new(poll))),
+            ..Self::default()
+        }
+    }
+
+    /// Requests the end.
+    pub(crate) fn request(&self) {
+        self.ended.store(true, Ordering::SeqCst);
+    }
+
+    /// Forgets an earlier request.
+    pub(crate) fn clear(&self) {
+        self.ended.store(false, Ordering::SeqCst);
+    }
+
     /// `true` after Ctrl-C, or after Ctrl-Z if that ends the program too.
     pub(crate) fn requested(&self) -> bool {
-        self.ended.load(Ordering::SeqCst) || self.suspended.load(Ordering::SeqCst)
+        self.ended.load(Ordering::SeqCst)
+            || self.suspended.load(Ordering::SeqCst)
+            || self.poll.as_ref().is_some_and(|Poll(poll)| poll())
     }
 
     /// Key that was pressed, with an explanation if its effect is not the usual one.
     pub(crate) fn pressed(&self) -> &'static str {
-        if self.suspended.load(Ordering::SeqCst) {
+        if self.poll.is_some() {
+            "interrupted"
+        } else if self.suspended.load(Ordering::SeqCst) {
             "Ctrl-Z (a suspended program keeps no link, so it ends instead)"
         } else {
             CTRL_C

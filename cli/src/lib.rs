@@ -1,8 +1,8 @@
 //! The `swimmer` command: parses, calls, prints, draws. No physics and no protocol live here.
 //!
-//! Entry points: [`run`] is the whole command, arguments in and exit status out; [`run_captured`] gives the JSON document of one
-//! command to a caller in the same process (the Python wheel), which keeps its own standard output, its own Ctrl-C and its own
-//! threads.
+//! Entry points: [`run`] is the whole command, arguments in and exit status out. A caller in the same process (the Python wheel)
+//! keeps its own standard output, its own Ctrl-C and its own threads: it drives a robot by [`RobotHandle`], runs experiments by
+//! [`Experiment`], and gets the JSON document of any other command by [`run_captured`].
 
 // All prints go through `output`, which does not panic if the reader has gone.
 #![deny(clippy::print_stdout, clippy::print_stderr)]
@@ -14,6 +14,7 @@ mod commands;
 mod context;
 mod csv_text;
 mod document;
+mod experiments;
 mod failure;
 mod in_fluid;
 mod interrupt;
@@ -37,8 +38,12 @@ use std::ffi::OsString;
 use clap::FromArgMatches as _;
 use clap::error::ErrorKind;
 
-pub use crate::captured::{CapturedFailure, CapturedOutput, options, run_captured};
+pub use crate::captured::{CapturedFailure, CapturedOutput, Noted, options, run_captured};
 use crate::commands::Arguments;
+pub use crate::commands::robot::{
+    IsInterrupted, Reply, RobotHandle, RobotOptions, Stopper, TelemetryReport,
+};
+pub use crate::experiments::Experiment;
 use crate::failure::BAD_INPUT;
 use crate::output::Output;
 

@@ -55,6 +55,18 @@ pub(crate) struct EmulatedBoard {
     firmware_log: Option<PathBuf>,
 }
 
+impl Default for EmulatedBoard {
+    /// The usual board, with the files of this checkout.
+    fn default() -> Self {
+        Self {
+            board: BoardName::NanoConnect,
+            firmware: None,
+            emulator: None,
+            firmware_log: None,
+        }
+    }
+}
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum BoardName {
     NanoConnect,

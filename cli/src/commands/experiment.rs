@@ -1,5 +1,6 @@
 //! `swimmer experiment`: gaits × repeats in randomised blocks, unattended, resumable, compared.
 
+mod campaign;
 mod folder;
 mod gaits;
 mod pack;
@@ -7,6 +8,11 @@ mod plan;
 mod report;
 mod run;
 mod status;
+
+pub(crate) use self::plan::plan;
+pub(crate) use self::report::report;
+pub(crate) use self::run::play;
+pub(crate) use self::status::status;
 
 use std::path::PathBuf;
 
@@ -31,7 +37,7 @@ pub(crate) enum Experiment {
 
 /// Spec, and the folder of its experiment.
 #[derive(Debug, clap::Args)]
-struct ExperimentPaths {
+pub(crate) struct ExperimentPaths {
     /// The spec of the experiment
     #[arg(value_name = "SPEC.toml")]
     spec: PathBuf,
@@ -41,6 +47,11 @@ struct ExperimentPaths {
 }
 
 impl ExperimentPaths {
+    /// Spec, and its folder if that is not named as the spec.
+    pub(crate) fn new(spec: PathBuf, output: Option<PathBuf>) -> Self {
+        Self { spec, output }
+    }
+
     fn folder(&self) -> PathBuf {
         self.output
             .clone()

@@ -17,6 +17,8 @@ pub(super) const PLAN: &str = "plan.json";
 pub(super) const JOURNAL: &str = "journal.jsonl";
 pub(super) const DRIVE: &str = "drive";
 pub(super) const REPORT: &str = "report.json";
+/// Campaign of the finished trials.
+pub(super) const CAMPAIGN: &str = "campaign.toml";
 pub(super) const PAGE: &str = "report.html";
 
 /// Planned experiment.

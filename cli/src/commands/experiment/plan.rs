@@ -25,50 +25,59 @@ pub(crate) struct PlanSpec {
     paths: ExperimentPaths,
 }
 
+/// Planned experiment.
 #[derive(Debug, Serialize)]
-struct PlanOutput<'a> {
+pub(crate) struct PlanOutput {
     folder: String,
     runs: usize,
     tank_time_s: f64,
     plan_sha256: String,
     #[serde(flatten)]
-    plan: &'a Plan,
+    plan: Plan,
 }
 
 impl PlanSpec {
     pub(super) fn run(self, output: Output) -> Outcome {
-        let text = read(&self.paths.spec)?;
-        let spec = Spec::parse(&text, &self.paths.spec)?;
-        let home = self.paths.spec.parent().unwrap_or_else(|| Path::new(""));
-        let swimmer = SwimmerFile::find_from(&spec.swimmer, home)?;
-        let folder = NewFolder::start(&self.paths.folder())?;
-        let draft = folder.draft().to_path_buf();
-        for inner in ["gaits", "tracks", "logs"] {
-            std::fs::create_dir_all(draft.join(inner)).map_err(|error| {
-                Failure::Tried(format!(
-                    "cannot make a folder in {}: {error}",
-                    draft.display()
-                ))
-            })?;
-        }
-        swimmer.save(&draft.join(SWIMMER))?;
-        swimmer_files::write_atomically(&draft.join(SPEC), text.as_bytes())?;
-        let maker = Maker::new(&spec, home, &draft, &swimmer)?;
-        drive(&maker, &swimmer)?;
-        let (gaits, left_out) = maker.all()?;
-        let plan = spec.plan(&text, gaits, left_out);
-        write_plan(&draft.join(PLAN), &plan)?;
-        let place = folder.place().display().to_string();
-        folder.publish()?;
-        output.print(&PlanOutput {
-            folder: place,
-            runs: plan.trials.len(),
-            tank_time_s: tank_time_s(&plan),
-            plan_sha256: plan.sha256(),
-            plan: &plan,
-        });
+        output.print(&plan(&self.paths)?);
         Ok(())
     }
+}
+
+/// Computes the gaits of an experiment, fixes the order of its trials, and writes its folder.
+///
+/// # Errors
+/// An invalid spec, a gait that cannot be found or played, and a disk that refuses.
+pub(crate) fn plan(paths: &ExperimentPaths) -> Outcome<PlanOutput> {
+    let text = read(&paths.spec)?;
+    let spec = Spec::parse(&text, &paths.spec)?;
+    let home = paths.spec.parent().unwrap_or_else(|| Path::new(""));
+    let swimmer = SwimmerFile::find_from(&spec.swimmer, home)?;
+    let folder = NewFolder::start(&paths.folder())?;
+    let draft = folder.draft().to_path_buf();
+    for inner in ["gaits", "tracks", "logs"] {
+        std::fs::create_dir_all(draft.join(inner)).map_err(|error| {
+            Failure::Tried(format!(
+                "cannot make a folder in {}: {error}",
+                draft.display()
+            ))
+        })?;
+    }
+    swimmer.save(&draft.join(SWIMMER))?;
+    swimmer_files::write_atomically(&draft.join(SPEC), text.as_bytes())?;
+    let maker = Maker::new(&spec, home, &draft, &swimmer)?;
+    drive(&maker, &swimmer)?;
+    let (gaits, left_out) = maker.all()?;
+    let plan = spec.plan(&text, gaits, left_out);
+    write_plan(&draft.join(PLAN), &plan)?;
+    let place = folder.place().display().to_string();
+    folder.publish()?;
+    Ok(PlanOutput {
+        folder: place,
+        runs: plan.trials.len(),
+        tank_time_s: tank_time_s(&plan),
+        plan_sha256: plan.sha256(),
+        plan,
+    })
 }
 
 /// Time of all plays and rests, without the ways to the start pose \[s\].
@@ -80,7 +89,7 @@ fn tank_time_s(plan: &Plan) -> f64 {
     seconds.sum()
 }
 
-impl fmt::Display for PlanOutput<'_> {
+impl fmt::Display for PlanOutput {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,

@@ -6,15 +6,16 @@ use experiment::unattended::{Comparison, Measure, compare};
 use serde::Serialize;
 use swimmer_files::write_atomically;
 
-use super::ExperimentPaths;
 use super::folder::{Folder, PAGE, REPORT};
+use super::{ExperimentPaths, campaign};
 use crate::failure::Outcome;
 use crate::output::{Output, document};
 use crate::report::experiment::page;
 
 /// Compare the measured gaits with the prediction, and each optimum with its neighbours
 ///
-/// Writes report.json and report.html (one page, with figures) into the folder of the experiment; also while trials are missing.
+/// Writes report.json, report.html (one page, with figures) and campaign.toml (for `swimmer calibrate`) into the folder of the
+/// experiment; also while trials are missing.
 /// Intervals are Student's over the repeats. An optimum is compared with each neighbour within blocks, one-sided, and the p-values
 /// are corrected for the number of comparisons (Holm).
 #[derive(Debug, clap::Args)]
@@ -23,33 +24,46 @@ pub(crate) struct ReportPlan {
     paths: ExperimentPaths,
 }
 
+/// Comparison of an experiment.
 #[derive(Debug, Serialize)]
-struct ReportOutput<'a> {
+pub(crate) struct ReportOutput {
     #[serde(flatten)]
-    comparison: &'a Comparison,
+    comparison: Comparison,
     report: String,
+    /// Campaign of the finished trials for `swimmer calibrate`; `null` without one.
+    campaign: Option<String>,
 }
 
 impl ReportPlan {
     pub(super) fn run(self, output: Output) -> Outcome {
-        let folder = Folder::of(&self.paths)?;
-        let journal = folder.journal()?;
-        let comparison = compare(&folder.plan, &journal);
-        let html = page(&folder.plan, &folder.swimmer.name, &comparison)?;
-        let path = folder.path.join(PAGE);
-        write_atomically(&path, html.as_bytes())?;
-        write_atomically(&folder.path.join(REPORT), document(&comparison).as_bytes())?;
-        output.print(&ReportOutput {
-            comparison: &comparison,
-            report: path.display().to_string(),
-        });
+        output.print(&report(&self.paths)?);
         Ok(())
     }
 }
 
-impl fmt::Display for ReportOutput<'_> {
+/// Compares the gaits of an experiment, and writes report.json and report.html.
+///
+/// # Errors
+/// A folder or a journal that cannot be read, and a disk that refuses.
+pub(crate) fn report(paths: &ExperimentPaths) -> Outcome<ReportOutput> {
+    let folder = Folder::of(paths)?;
+    let journal = folder.journal()?;
+    let comparison = compare(&folder.plan, &journal);
+    let html = page(&folder.plan, &folder.swimmer.name, &comparison)?;
+    let path = folder.path.join(PAGE);
+    write_atomically(&path, html.as_bytes())?;
+    write_atomically(&folder.path.join(REPORT), document(&comparison).as_bytes())?;
+    let campaign = campaign::write(&folder, &journal)?;
+    Ok(ReportOutput {
+        comparison,
+        report: path.display().to_string(),
+        campaign: campaign.map(|path| path.display().to_string()),
+    })
+}
+
+impl fmt::Display for ReportOutput {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let of = self.comparison;
+        let of = &self.comparison;
         writeln!(f, "{} of {} trials are finished.", of.done, of.runs)?;
         writeln!(
             f,
@@ -90,6 +104,13 @@ impl fmt::Display for ReportOutput<'_> {
                 one.better, one.than
             )?;
         }
-        write!(f, "The report is {}.", self.report)
+        write!(f, "The report is {}.", self.report)?;
+        if let Some(campaign) = &self.campaign {
+            write!(
+                f,
+                "\n`swimmer calibrate {campaign}` fits the drag model to these trials."
+            )?;
+        }
+        Ok(())
     }
 }

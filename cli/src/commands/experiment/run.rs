@@ -36,8 +36,9 @@ pub(crate) struct RunPlan {
     tracked: Tracked,
 }
 
+/// Progress after a run.
 #[derive(Debug, Serialize)]
-struct RunOutput {
+pub(crate) struct RunOutput {
     folder: String,
     runs: usize,
     done: usize,
@@ -55,82 +56,95 @@ struct Playable {
 
 impl RunPlan {
     pub(super) fn run(self, output: Output) -> Outcome {
-        let folder = Folder::of(&self.paths)?;
         let interrupt = Interrupt::install_with_a_robot()?;
-        let (mut file, journal) = JournalFile::open(&folder)?;
-        let left = journal.remaining(&folder.plan).len();
-        if left == 0 {
-            output.print(&done(&folder, &journal, 0, 0.0));
-            return Ok(());
+        let (paths, access, tracked) = (&self.paths, &self.access, &self.tracked);
+        output.print(&play(paths, access, tracked, interrupt)?);
+        Ok(())
+    }
+}
+
+/// Plays the trials that are left.
+///
+/// # Errors
+/// A low battery, an e-stop, a lost link or track, an interrupt: the same call goes on.
+pub(crate) fn play(
+    paths: &ExperimentPaths,
+    access: &Access,
+    tracked: &Tracked,
+    interrupt: Interrupt,
+) -> Outcome<RunOutput> {
+    let folder = Folder::of(paths)?;
+    let (mut file, journal) = JournalFile::open(&folder)?;
+    let left = journal.remaining(&folder.plan).len();
+    if left == 0 {
+        return Ok(done(&folder, &journal, 0, 0.0));
+    }
+    let number = opened(&journal) + 1;
+    let log = format!("logs/run-{number}.mcap");
+    let log_path = folder.path.join(&log);
+    // A log of this number may be left from a run that was killed before its first line.
+    let _ = std::fs::remove_file(&log_path);
+    let access = access.logging_to(log_path);
+    let seed = folder.plan.seed.wrapping_add(number);
+    let (command, cameras) = ("swimmer experiment run", tracked.cameras());
+    let swimmer = &folder.swimmer;
+    let mut bench = Bench::open(&access, command, cameras, swimmer, seed, interrupt)?;
+    let servos = *bench.servos();
+    let (gaits, playable) = gaits(&folder, &servos)?;
+    let planner = planner(&folder, servos)?;
+    file.append(&Entry::Opened {
+        plan: folder.plan.sha256(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        log: Some(log),
+    })?;
+    let spec = &folder.spec;
+    let mut run = Run::new(
+        &folder.plan,
+        &journal,
+        planner.clone(),
+        gaits,
+        spec.start,
+        spec.stop,
+    );
+    let began = bench.now_s();
+    let progress = Progress::of_steps(left as u64);
+    let mut executor = Executor {
+        folder: &folder,
+        file: &mut file,
+        bench: &mut bench,
+        planner: &planner,
+        playable: &playable,
+    };
+    let ending = loop {
+        for event in executor.bench.advance()? {
+            run.event(event);
         }
-        let number = opened(&journal) + 1;
-        let log = format!("logs/run-{number}.mcap");
-        let log_path = folder.path.join(&log);
-        // A log of this number may be left from a run that was killed before its first line.
-        let _ = std::fs::remove_file(&log_path);
-        let access = self.access.logging_to(log_path);
-        let seed = folder.plan.seed.wrapping_add(number);
-        let (command, cameras) = ("swimmer experiment run", self.tracked.cameras());
-        let swimmer = &folder.swimmer;
-        let mut bench = Bench::open(&access, command, cameras, swimmer, seed, interrupt)?;
-        let servos = *bench.servos();
-        let (gaits, playable) = gaits(&folder, &servos)?;
-        let planner = planner(&folder, servos)?;
-        file.append(&Entry::Opened {
-            plan: folder.plan.sha256(),
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            log: Some(log),
-        })?;
-        let spec = &folder.spec;
-        let mut run = Run::new(
-            &folder.plan,
-            &journal,
-            planner.clone(),
-            gaits,
-            spec.start,
-            spec.stop,
-        );
-        let began = bench.now_s();
-        let progress = Progress::of_steps(left as u64);
-        let mut executor = Executor {
-            folder: &folder,
-            file: &mut file,
-            bench: &mut bench,
-            planner: &planner,
-            playable: &playable,
-        };
-        let ending = loop {
-            for event in executor.bench.advance()? {
+        while let Some(request) = run.poll(executor.bench.now_s()) {
+            if let Some(event) = executor.execute(request)? {
                 run.event(event);
             }
-            while let Some(request) = run.poll(executor.bench.now_s()) {
-                if let Some(event) = executor.execute(request)? {
-                    run.event(event);
-                }
-            }
-            if let Some(trial) = run.trial() {
-                progress.doing(format!("trial {}, {}", trial.number, trial.gait));
-            }
-            progress.at(run.finished() as u64);
-            if let Some(ending) = run.ending() {
-                break ending.clone();
-            }
-        };
-        drop(progress);
-        let duration = bench.now_s() - began;
-        let finished = run.finished();
-        let closed = bench.close();
-        match ending {
-            RunEnding::Complete => {
-                let journal = folder.journal()?;
-                output.print(&done(&folder, &journal, finished, duration));
-                closed
-            }
-            RunEnding::Interrupted(reason) => Err(Failure::Tried(format!(
-                "{reason}; {finished} trials were finished, {} are left: the same command goes on",
-                left.saturating_sub(finished)
-            ))),
         }
+        if let Some(trial) = run.trial() {
+            progress.doing(format!("trial {}, {}", trial.number, trial.gait));
+        }
+        progress.at(run.finished() as u64);
+        if let Some(ending) = run.ending() {
+            break ending.clone();
+        }
+    };
+    drop(progress);
+    let duration = bench.now_s() - began;
+    let finished = run.finished();
+    let closed = bench.close();
+    match ending {
+        RunEnding::Complete => {
+            let journal = folder.journal()?;
+            closed.map(|()| done(&folder, &journal, finished, duration))
+        }
+        RunEnding::Interrupted(reason) => Err(Failure::Tried(format!(
+            "{reason}; {finished} trials were finished, {} are left: the same command goes on",
+            left.saturating_sub(finished)
+        ))),
     }
 }
 

@@ -16,8 +16,9 @@ pub(crate) struct Status {
     paths: ExperimentPaths,
 }
 
+/// Progress of an experiment.
 #[derive(Debug, Serialize)]
-struct StatusOutput {
+pub(crate) struct StatusOutput {
     folder: String,
     runs: usize,
     done: usize,
@@ -37,25 +38,33 @@ struct Next {
 
 impl Status {
     pub(super) fn run(self, output: Output) -> Outcome {
-        let folder = Folder::of(&self.paths)?;
-        let journal = folder.journal()?;
-        let failures = folder.plan.trials.iter();
-        output.print(&StatusOutput {
-            folder: folder.path.display().to_string(),
-            runs: folder.plan.trials.len(),
-            done: journal.finished().len(),
-            given_up: journal.given_up().len(),
-            failed_attempts: failures
-                .map(|trial| journal.failures(trial.number) as usize)
-                .sum(),
-            next: journal.remaining(&folder.plan).first().map(|trial| Next {
-                trial: trial.number,
-                gait: trial.gait.clone(),
-            }),
-            interruption: journal.interruption().map(str::to_owned),
-        });
+        output.print(&status(&self.paths)?);
         Ok(())
     }
+}
+
+/// Progress of an experiment by its journal.
+///
+/// # Errors
+/// A folder or a journal that cannot be read.
+pub(crate) fn status(paths: &ExperimentPaths) -> Outcome<StatusOutput> {
+    let folder = Folder::of(paths)?;
+    let journal = folder.journal()?;
+    let failures = folder.plan.trials.iter();
+    Ok(StatusOutput {
+        folder: folder.path.display().to_string(),
+        runs: folder.plan.trials.len(),
+        done: journal.finished().len(),
+        given_up: journal.given_up().len(),
+        failed_attempts: failures
+            .map(|trial| journal.failures(trial.number) as usize)
+            .sum(),
+        next: journal.remaining(&folder.plan).first().map(|trial| Next {
+            trial: trial.number,
+            gait: trial.gait.clone(),
+        }),
+        interruption: journal.interruption().map(str::to_owned),
+    })
 }
 
 impl fmt::Display for StatusOutput {

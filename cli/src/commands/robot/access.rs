@@ -81,6 +81,22 @@ pub(super) const BEAT: Duration = Duration::from_millis(20);
 const TO_STORE: Duration = Duration::from_secs(5);
 
 impl Access {
+    /// Access without options of the command line. `key` is the file of the robot's key, `log` a new link log.
+    pub(crate) fn new(
+        port: Vec<String>,
+        baud: Option<u32>,
+        key: Option<PathBuf>,
+        log: Option<PathBuf>,
+    ) -> Self {
+        Self {
+            port,
+            log,
+            baud: baud.unwrap_or(BAUD),
+            key: KeyFile::of(key),
+            board: EmulatedBoard::default(),
+        }
+    }
+
     /// `true` if a port was named.
     pub(super) fn names_a_port(&self) -> bool {
         !self.port.is_empty()

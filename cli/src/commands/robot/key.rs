@@ -88,6 +88,11 @@ impl fmt::Display for Changed {
 }
 
 impl KeyFile {
+    /// Key in this file; `None` for a robot without a key.
+    pub(super) fn of(key: Option<PathBuf>) -> Self {
+        Self { key }
+    }
+
     /// A new session, signed where a key was named.
     ///
     /// # Errors

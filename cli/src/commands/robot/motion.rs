@@ -5,16 +5,16 @@ use std::fmt;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use host_link::LinkError;
 use host_link::robot::await_play::{at_rest, finished};
-use link_protocol::{Checked, Refusal, Status};
+use host_link::{LinkError, Robot};
+use link_protocol::{Checked, Refusal, Status, Telemetry};
 use serde::Serialize;
 
 use super::access::{Access, Contact, RobotConnection};
 use super::outputs::{Done, PAUSED_DETACHED, cause, state};
 use super::playing::{self, Playing};
 use super::playlist;
-use super::port::Pace;
+use super::port::{AnyPort, Pace};
 use super::port_owner::PortRequest;
 use super::rest::{nothing_under_way, ready, stopped_on_failure, wait_for_rest};
 use super::upload::BeforePlay;
@@ -134,8 +134,35 @@ pub(super) fn play(access: &Access, play: &Play, output: Output) -> Outcome {
         },
         None => status.held(),
     };
-    let cycles = play.cycles.unwrap_or(0);
-    let robot = &mut line.robot;
+    let request = PlayRequest {
+        cycles: play.cycles,
+        period_s: play.period,
+        detached: play.detach,
+    };
+    begin(&mut line.robot, &request, checked)?;
+    if play.detach {
+        let status = line.robot.status()?;
+        output.print(&Played::new(&status, true));
+        return line.close();
+    }
+    output.line(&playing::announcement(play.cycles, play.period));
+    wait(&mut line, &interrupt, output)?;
+    line.close()
+}
+
+/// Play of the gait that the robot holds.
+pub(super) struct PlayRequest {
+    /// `None`: without end.
+    pub(super) cycles: Option<u32>,
+    pub(super) period_s: f64,
+    pub(super) detached: bool,
+}
+
+/// Arms the robot and begins a play. `checked` are table and settings that it must hold.
+///
+/// # Errors
+/// The robot's refusal, and the link's; the robot is stopped.
+pub(super) fn begin(robot: &mut Robot<AnyPort>, play: &PlayRequest, checked: Checked) -> Outcome {
     match robot.arm(false) {
         // Nothing was powered by this, and what the robot does instead is not ours to stop.
         Err(LinkError::Refused {
@@ -145,8 +172,8 @@ pub(super) fn play(access: &Access, play: &Play, output: Output) -> Outcome {
         Err(refused @ LinkError::Refused { .. }) => return Err(refused.into()),
         armed => stopped_on_failure(robot, armed)?,
     }
-    let period = Duration::from_secs_f64(play.period);
-    let begun = robot.play_checked(cycles, period, play.detach, checked);
+    let period = Duration::from_secs_f64(play.period_s);
+    let begun = robot.play_checked(play.cycles.unwrap_or(0), period, play.detached, checked);
     let has_no_gait = matches!(
         begun,
         Err(LinkError::Refused {
@@ -155,15 +182,7 @@ pub(super) fn play(access: &Access, play: &Play, output: Output) -> Outcome {
         })
     );
     stopped_on_failure(robot, begun)
-        .map_err(|failure| if has_no_gait { no_gait() } else { failure })?;
-    if play.detach {
-        let status = robot.status()?;
-        output.print(&Played::new(&status, true));
-        return line.close();
-    }
-    output.line(&playing::announcement(play.cycles, play.period));
-    wait(&mut line, &interrupt, output)?;
-    line.close()
+        .map_err(|failure| if has_no_gait { no_gait() } else { failure })
 }
 
 fn no_gait() -> Failure {
@@ -287,11 +306,26 @@ fn hold(line: &mut RobotConnection, interrupt: &Interrupt) -> Outcome {
 fn wait(line: &mut RobotConnection, interrupt: &Interrupt, output: Output) -> Outcome {
     let status = line.robot.status()?;
     let mut shown = playing::PlayProgress::new(Playing::of(&status));
+    let ended = until_end(line, interrupt, |telemetry| shown.update(telemetry));
+    drop(shown);
+    output.print(&ended?);
+    Ok(())
+}
+
+/// Waits for the end of the last cycle, and serves other processes meanwhile. An interrupt stops the robot.
+///
+/// # Errors
+/// [`Failure::Tried`] if the play is interrupted, unless it is one without end; the robot's and the link's.
+pub(super) fn until_end(
+    line: &mut RobotConnection,
+    interrupt: &Interrupt,
+    mut shown: impl FnMut(&Telemetry),
+) -> Outcome<Played> {
     let (robot, holder) = line.split();
     let status = loop {
         let waited = robot.wait_while(|telemetry| {
             if let Some(telemetry) = telemetry {
-                shown.update(telemetry);
+                shown(telemetry);
             }
             if interrupt.requested() || holder.asked() {
                 ControlFlow::Break(())
@@ -302,14 +336,12 @@ fn wait(line: &mut RobotConnection, interrupt: &Interrupt, output: Output) -> Ou
         match stopped_on_failure(robot, waited)? {
             Some(status) => break status,
             None if interrupt.requested() => {
-                drop(shown);
                 robot.stop()?;
                 wait_for_rest(robot)?;
                 let status = robot.status()?;
                 if status.cycles == 0 && interrupt.pressed() == CTRL_C {
                     // Without end this is how it ends, and the robot has confirmed it.
-                    output.print(&Played::new(&status, false));
-                    return Ok(());
+                    return Ok(Played::new(&status, false));
                 }
                 return Err(Failure::Tried(format!(
                     "{}: the robot was stopped after {} whole cycles",
@@ -320,7 +352,5 @@ fn wait(line: &mut RobotConnection, interrupt: &Interrupt, output: Output) -> Ou
             None => holder.serve(robot),
         }
     };
-    drop(shown);
-    output.print(&Played::new(&ready(line, status), false));
-    Ok(())
+    Ok(Played::new(&ready(line, status), false))
 }

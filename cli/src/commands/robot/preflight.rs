@@ -199,6 +199,19 @@ impl TankOptions {
 }
 
 impl Arguments {
+    /// Forecast for this duration of a cycle \[s\], without a fit and without a tank.
+    pub(super) fn at_period(period: f64) -> Self {
+        Self {
+            period,
+            fit: None,
+            room: TankOptions {
+                tank: None,
+                start: TankPosition(Vector2::zeros()),
+                heading: 0.0,
+            },
+        }
+    }
+
     /// Checks the options before any robot is contacted.
     ///
     /// # Errors

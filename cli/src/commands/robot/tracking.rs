@@ -61,6 +61,11 @@ pub(crate) struct Visible {
 }
 
 impl Tracked {
+    /// Source of these frames, and what is in them.
+    pub(crate) fn new(track: SourceName, visible: Visible) -> Self {
+        Self { track, visible }
+    }
+
     /// Source and names of these cameras.
     pub(crate) fn cameras(&self) -> CamerasOf<'_> {
         self.visible.of(&self.track)
@@ -68,6 +73,22 @@ impl Tracked {
 }
 
 impl Visible {
+    /// Names of the reflectors or of the rigid body; the source has its usual axes. `None` for the usual names.
+    pub(crate) fn new(
+        front: Option<String>,
+        back: Option<String>,
+        body: Option<String>,
+        facing: Option<f64>,
+    ) -> Self {
+        Self {
+            front,
+            back,
+            body,
+            facing,
+            axes: LiveAxes::default(),
+        }
+    }
+
     /// Cameras behind a source that see these things.
     pub(super) fn of<'a>(&'a self, source: &'a SourceName) -> CamerasOf<'a> {
         CamerasOf {

@@ -16,7 +16,7 @@ use super::outputs::{Gait, print_refusal};
 use super::passive;
 use super::port::Pace;
 use super::preflight::{Player, Preflight};
-use super::{Owner, Upload};
+use super::{Owner, Upload, preflight};
 use crate::arguments::{load_gait, load_swimmer};
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
@@ -26,8 +26,9 @@ use crate::progress::Progress;
 /// An upload over a link that loses frames may take this long.
 const PATIENCE: Duration = Duration::from_mins(2);
 
+/// Gait that the robot holds now.
 #[derive(Debug, Serialize)]
-struct Uploaded {
+pub(super) struct Uploaded {
     #[serde(flatten)]
     gait: Gait,
     bytes: usize,
@@ -117,30 +118,64 @@ pub(super) fn run(access: &Access, arguments: &Upload, output: Output) -> Outcom
             }
             Err(failure) => return Err(failure),
         };
+    let force = arguments.owner.force;
+    output.print(&send_forecast(
+        &mut line, gait, preflight, force, &interrupt,
+    )?);
+    line.close()
+}
+
+/// Uploads a gait with its forecast. `force` uploads what must not be played.
+fn send_forecast(
+    line: &mut RobotConnection,
+    gait: Prepared,
+    preflight: Option<Preflight>,
+    force: bool,
+    interrupt: &Interrupt,
+) -> Outcome<Uploaded> {
     // The robot itself refuses the problems that it can detect.
     let unseen = preflight
         .as_ref()
-        .and_then(|told| told.unseen_by_robot.as_ref());
-    if let Some(reason) = unseen.filter(|_| !arguments.owner.force) {
+        .and_then(|forecast| forecast.unseen_by_robot.as_ref());
+    if let Some(reason) = unseen.filter(|_| !force) {
         return Err(Failure::Tried(format!(
             "{} must not be played: {reason}; --force uploads it all the same",
             gait.name
         )));
     }
-    let predicted = line.robot.expected_upload(gait.table.bytes().len());
-    let begun = line.robot.port().now();
-    let info = send(&mut line, &gait, &interrupt)?;
-    let seconds = line.robot.port().now().saturating_sub(begun).as_secs_f64();
     let bytes = gait.table.bytes().len();
-    output.print(&Uploaded {
+    let predicted = line.robot.expected_upload(bytes);
+    let begun = line.robot.port().now();
+    let info = send(line, &gait, interrupt)?;
+    let seconds = line.robot.port().now().saturating_sub(begun).as_secs_f64();
+    Ok(Uploaded {
         gait: Gait::new(&info),
         bytes,
         seconds,
         predicted_seconds: predicted.as_secs_f64(),
         preflight,
         name: gait.name,
-    });
-    line.close()
+    })
+}
+
+/// Checks, forecasts and uploads a gait. `swimmer` is the robot's, if no preset describes it.
+///
+/// # Errors
+/// [`Failure::Tried`] if the gait is another swimmer's or must not be played, and the link's.
+pub(super) fn upload(
+    line: &mut RobotConnection,
+    gait: Prepared,
+    swimmer: Option<&SwimmerFile>,
+    period_s: f64,
+    interrupt: &Interrupt,
+) -> Outcome<Uploaded> {
+    let configuration = line.robot.configuration()?;
+    gait.check_swimmer(&configuration, swimmer)?;
+    passive::agree(line, &gait.name, gait.passive(), false)?;
+    let player = Player::of_robot(line.robot.info(), &configuration, swimmer);
+    let forecast = preflight::Arguments::at_period(period_s);
+    let preflight = forecast.foretell(&gait.name, &gait.gait, gait.spring.as_ref(), &player)?;
+    send_forecast(line, gait, Some(preflight), false, interrupt)
 }
 
 /// `--dry-run`: exit status 1 if the gait must not be played.
@@ -215,7 +250,7 @@ impl BeforePlay {
 }
 
 /// A gait ready to be sent.
-struct Prepared {
+pub(super) struct Prepared {
     name: String,
     gait: AnyGait,
     table: GaitTable,
@@ -233,32 +268,36 @@ pub(super) struct MadeFor {
 
 impl Prepared {
     fn new(spec: &GaitSpec) -> Outcome<Self> {
-        let (made_for, spring) = match spec {
-            GaitSpec::File { path, .. } => {
-                let file = GaitFile::load(path)?;
-                let made_for = file.swimmer_hash.map(|hash| MadeFor {
-                    name: file
-                        .swimmer_name
-                        .unwrap_or_else(|| "another swimmer".into()),
-                    hash,
-                });
-                (made_for, file.passive)
-            }
-            GaitSpec::Circle { .. } | GaitSpec::Square { .. } => (None, None),
+        let file = match spec {
+            GaitSpec::File { path, .. } => GaitFile::load(path)?,
+            GaitSpec::Circle { .. } | GaitSpec::Square { .. } => GaitFile::default(),
         };
-        let gait = load_gait(spec)?;
+        Self::of_file(spec.readable(), load_gait(spec)?, &file)
+    }
+
+    /// A curve with the swimmer and the spring that its file names.
+    ///
+    /// # Errors
+    /// [`Failure::BadInput`] for a curve that makes no table.
+    pub(super) fn of_file(name: String, gait: AnyGait, file: &GaitFile) -> Outcome<Self> {
         let table = table_of(&gait).map_err(|error| {
             Failure::BadInput(format!(
-                "the gait {} makes no table for the robot: {error}",
-                spec.readable()
+                "the gait {name} makes no table for the robot: {error}"
             ))
         })?;
+        let made_for = file.swimmer_hash.map(|hash| MadeFor {
+            name: file
+                .swimmer_name
+                .clone()
+                .unwrap_or_else(|| "another swimmer".into()),
+            hash,
+        });
         Ok(Self {
-            name: spec.readable(),
+            name,
             gait,
             table,
             made_for,
-            spring,
+            spring: file.passive,
         })
     }
 
