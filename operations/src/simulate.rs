@@ -29,6 +29,16 @@ pub struct PlayedOptions {
     pub pulse_step_ns: u32,
 }
 
+impl Default for PlayedOptions {
+    /// The robot's largest table, and its timer.
+    fn default() -> Self {
+        Self {
+            knots: link_protocol::MAX_KNOTS,
+            pulse_step_ns: Servos::ROBOT_PULSE_STEP_NS,
+        }
+    }
+}
+
 impl Default for Options {
     /// The paper's cycle of 30 s, in the model alone.
     fn default() -> Self {

@@ -27,6 +27,21 @@ pub(crate) struct Gait {
 const SAMPLES: usize = 200;
 
 impl Gait {
+    /// Its curve.
+    pub(crate) fn curve(&self) -> &AnyGait {
+        &self.curve
+    }
+
+    /// Its gait file; a closed form is sampled.
+    pub(crate) fn file(&self) -> &GaitFile {
+        &self.file
+    }
+
+    /// Name for messages.
+    pub(crate) fn name(&self) -> &str {
+        self.closed_form.as_deref().unwrap_or("the gait")
+    }
+
     fn of_file(file: GaitFile) -> PyResult<Self> {
         let curve = AnyGait::from_file(&file)
             .map_err(|invalid| BadInput::new_err(format!("a gait from samples: {invalid}")))?;

@@ -9,7 +9,11 @@
 mod arrays;
 mod commands;
 mod errors;
+mod experiment;
 mod gait;
+mod operations;
+mod robot;
+mod signals;
 mod swimmer;
 
 /// The extension module; `python/swimmer/_swimmer.pyi` says what is in it.
@@ -20,7 +24,15 @@ mod _swimmer {
     #[pymodule_export]
     use super::errors::{BadInput, Error, Failed};
     #[pymodule_export]
+    use super::experiment::{
+        experiment_plan, experiment_report, experiment_run, experiment_status,
+    };
+    #[pymodule_export]
     use super::gait::Gait;
+    #[pymodule_export]
+    use super::operations::{certify, height_map, simulate};
+    #[pymodule_export]
+    use super::robot::{RobotLink, RobotSettings};
     #[pymodule_export]
     use super::swimmer::Swimmer;
     #[pymodule_export]

@@ -20,6 +20,11 @@ pub(crate) struct Swimmer {
 }
 
 impl Swimmer {
+    /// Its swimmer file.
+    pub(crate) fn file(&self) -> &SwimmerFile {
+        &self.file
+    }
+
     fn of(file: SwimmerFile) -> PyResult<Self> {
         let model = Model::new(&file.swimmer).map_err(|error| {
             BadInput::new_err(format!("the swimmer `{}` cannot swim: {error}", file.name))

@@ -12,11 +12,12 @@ Lengths are in metres, angles in radians; `70deg` is understood where a number i
 `--max-angle` is `max_angle` here, and what it prints with `--json` are the attributes of its result.
 """
 
-from . import optimize, sweep
+from . import experiment, optimize, sweep
 from ._commands import atlas, calibrate, certify, height_map, plan, simulate, tracks
 from ._run import Doubt
 from ._swimmer import BadInput, Error, Failed, Gait, Swimmer, __version__
 from .results import Atlas, Calibration, HeightMap, OptimalGait, Result, Simulation
+from .robot import Pose, Robot, Telemetry
 
 __all__ = [
     "Atlas",
@@ -28,13 +29,17 @@ __all__ = [
     "Gait",
     "HeightMap",
     "OptimalGait",
+    "Pose",
     "Result",
+    "Robot",
     "Simulation",
     "Swimmer",
+    "Telemetry",
     "__version__",
     "atlas",
     "calibrate",
     "certify",
+    "experiment",
     "height_map",
     "optimize",
     "plan",

@@ -7,8 +7,9 @@ from typing import Literal
 
 import numpy as np
 
-from ._run import Run, Text
-from ._swimmer import Gait, Swimmer
+from . import _swimmer
+from ._run import Run, Text, warn
+from ._swimmer import BadInput, Gait, Swimmer
 from .optimize import Angle
 from .results import Atlas, Calibration, HeightMap, OptimalGait, Result, Simulation, Trajectory
 
@@ -28,14 +29,73 @@ def simulate(
     relaxation: float | None = None,
     output: Text | None = None,
 ) -> Simulation:
-    """Swims a gait in the model: `displacement_over_length`, `rotation_rad`, `efficiency`, … of the first cycle, and the `trajectory`.
+    """Swims a gait in the model and returns the results of the first cycle.
 
-    With `played` also what the robot will make of it, at `period` seconds a cycle. `picture` is a new file: snapshots along the way
-    as .svg or .png, one cycle in motion as .gif.
+    Parameters
+    ----------
+    swimmer : Swimmer, str or path
+        A swimmer, the name of a preset, or a swimmer file.
+    gait : Gait, str or path
+        A gait, ``circle:70deg``, or a gait file; with a passive joint also ``sine:AMPLITUDE``.
+    cycles : int, optional
+        Number of cycles of the trajectory and of the picture.
+    played : bool, optional
+        Also forecast the cycle as the robot plays it: ``played``.
+    period : float, optional
+        Duration of a cycle [s], 30 unless given.
+    knots, pulse_step : int, optional
+        Knots of the robot's table, and step of its timer [ns]; with `played`.
+    picture : path, optional
+        New file: snapshots along the way (.svg, .png, .pdf), or one cycle in motion (.gif).
+    passive : {"front", "back"}, optional
+        Joint with a spring in place of a servo, which follows the other one.
+    stiffness, relaxation : float, optional
+        Stiffness of the spring [N m/rad], or its relaxation time [s].
+    output : path, optional
+        New gait file of the limit cycle of a passive joint.
 
-    A `passive` joint has a spring of this `stiffness` [N m/rad] or `relaxation` time [s] and follows the other one, which the gait
-    or `sine:AMPLITUDE` drives. `output` is a new gait file of its limit cycle.
+    Returns
+    -------
+    Simulation
+        ``displacement_over_length``, ``rotation_rad``, ``efficiency``, … and the ``trajectory``.
+
+    Raises
+    ------
+    BadInput
+        If an argument or a file cannot be used.
+
+    Examples
+    --------
+    >>> import swimmer as sw
+    >>> swum = sw.simulate("purcell", sw.Gait.circle(1.1), cycles=2)
+    >>> swum.trajectory.pose.shape
+    (1001, 3)
     """
+    drawn = [picture, passive, stiffness, relaxation, output]
+    if any(option is not None for option in drawn) or (isinstance(gait, str) and gait.startswith("sine:")):
+        return _simulate_by_command(swimmer, gait, cycles, played, period, knots, pulse_step, picture, passive, stiffness, relaxation, output)
+    if (knots is not None or pulse_step is not None) and not played:
+        raise BadInput("knots and pulse_step belong to a forecast on the robot: add played=True")
+    document, (cycle, u, phi, pose), notes = _swimmer.simulate(swimmer, gait, cycles, period, played, knots, pulse_step)
+    warn(notes, stacklevel=3)
+    return Simulation(document, Trajectory(cycle, u, phi, pose))
+
+
+def _simulate_by_command(
+    swimmer: Swimmer | Text,
+    gait: Gait | Text,
+    cycles: int,
+    played: bool,
+    period: float | None,
+    knots: int | None,
+    pulse_step: int | None,
+    picture: Text | None,
+    passive: str | None,
+    stiffness: float | None,
+    relaxation: float | None,
+    output: Text | None,
+) -> Simulation:
+    """Pictures and passive joints, which the command draws and reads."""
     with Run("simulate") as run:
         run.swimmer(swimmer)
         run.gait(gait)
@@ -55,7 +115,7 @@ def simulate(
         )
         table = run.place("trajectory.csv")
         run.words(f"--trajectory={table}")
-        document = run.document()
+        document = run.document(stacklevel=4)
         rows = np.loadtxt(table, delimiter=",", skiprows=1, ndmin=2)
     trajectory = Trajectory(rows[:, 0].astype(np.int64), rows[:, 1], rows[:, 2:4], rows[:, 4:7])
     return Simulation(document, trajectory)
@@ -74,27 +134,53 @@ def certify(
     clearance: float | None = None,
     playable: bool = False,
 ) -> Result:
-    """Checks a gait against the necessary conditions: `pass_`, `verdict` and `checks`, each with its number.
+    """Checks a gait against the necessary conditions of an optimum.
 
-    Objective and bounds are those of the gait's file unless given. A gait for speed has to be the fastest of any period unless its file
-    states a period; with `fixed_period` it has to be the farthest in its own. A gait that fails is a result, not an error.
+    A gait that fails is a result, not an error.
+
+    Parameters
+    ----------
+    swimmer : Swimmer, str or path
+        A swimmer, the name of a preset, or a swimmer file.
+    gait : Gait, str or path
+        A gait, ``circle:70deg``, or a gait file.
+    objective : str, optional
+        Objective, that of the gait file unless given. A gait for speed has to be the fastest of any period unless its file states one.
+    fixed_period : bool, optional
+        For speed: the gait has to be the farthest in its own period.
+    max_angle, min_angle : float or str, optional
+        Bounds of the joints [rad], or as ``70deg``; naming one bound replaces all of the file's.
+    sector, no_overlap, playable : bool, optional
+        Each quarter stays in its sector; links may not cross; the robot's own bounds.
+    clearance : float, optional
+        Least distance of the side links [m].
+
+    Returns
+    -------
+    Result
+        ``pass_``, ``verdict`` and ``checks``, each with its value and tolerance.
+
+    Raises
+    ------
+    BadInput
+        If an argument or a file cannot be used, or neither names an objective.
+
+    Examples
+    --------
+    >>> import swimmer as sw
+    >>> sw.certify("purcell", sw.optimize.displacement("purcell").gait).verdict
+    'pass'
     """
-    with Run("certify") as run:
-        run.swimmer(swimmer)
-        run.gait(gait)
-        run.options(
-            {
-                "objective": objective,
-                "fixed_period": fixed_period,
-                "max_angle": max_angle,
-                "min_angle": min_angle,
-                "sector": sector,
-                "no_overlap": no_overlap,
-                "clearance": clearance,
-                "playable": playable,
-            }
-        )
-        return Result(run.document())
+    document, notes = _swimmer.certify(
+        swimmer, gait, objective, fixed_period, max_angle, min_angle, sector, no_overlap, clearance, playable
+    )
+    warn(notes, stacklevel=3)
+    certificate = Result(document)
+    if not certificate.pass_:
+        failed = sum(not check["pass"] for check in certificate.checks)
+        doubt = f"{certificate.verdict}: {failed} of {len(certificate.checks)} conditions do not hold"
+        warn([f"note: the gait is no certified optimum ({doubt})"], stacklevel=3)
+    return certificate
 
 
 def atlas(
@@ -154,20 +240,39 @@ def height_map(
     max_angle: Angle = 2.8,
     gait: Gait | Text | Sequence[Gait | Text] = (),
 ) -> HeightMap:
-    """The height function in minimum-perturbation coordinates over |φᵢ| ≤ max_angle: `zero_on_diagonal`, `zero_curves`, … and H."""
-    gaits = [gait] if isinstance(gait, Gait | str | os.PathLike) else gait
-    with Run("height-map") as run:
-        run.swimmer(swimmer)
-        run.options({"row": row, "max_angle": max_angle})
-        for one in gaits:
-            run.gait(one)
-        table = run.place("heights.csv")
-        run.words(f"--output={table}")
-        document = run.document()
-        rows = np.loadtxt(table, delimiter=",", skiprows=1)
-    phi = np.unique(rows[:, 0])
-    order = np.lexsort((rows[:, 1], rows[:, 0]))
-    return HeightMap(document, phi, rows[order, 2].reshape(len(phi), len(phi)))
+    """Maps the height function in minimum-perturbation coordinates over |φᵢ| ≤ max_angle.
+
+    Parameters
+    ----------
+    swimmer : Swimmer, str or path
+        A swimmer, the name of a preset, or a swimmer file.
+    row : {"x", "y", "theta"}, optional
+        Component of the displacement: along the swimmer, across it, or rotation.
+    max_angle : float or str, optional
+        Half width of the map [rad], or as ``160deg``.
+    gait : Gait, str, path or a sequence of them, optional
+        Gaits whose enclosed height is compared with what they swim: ``gaits``.
+
+    Returns
+    -------
+    HeightMap
+        ``zero_on_diagonal``, ``zero_curves``, … with the arrays ``phi`` and ``height``.
+
+    Raises
+    ------
+    BadInput
+        If an argument or a file cannot be used, or a gait leaves the map.
+
+    Examples
+    --------
+    >>> import swimmer as sw
+    >>> sw.height_map("purcell", max_angle=2.5).height.shape
+    (201, 201)
+    """
+    gaits = [gait] if isinstance(gait, Gait | str | os.PathLike) else list(gait)
+    document, phi, height, notes = _swimmer.height_map(swimmer, row, max_angle, gaits)
+    warn(notes, stacklevel=3)
+    return HeightMap(document, phi, height)
 
 
 def calibrate(

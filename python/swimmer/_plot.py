@@ -10,6 +10,7 @@ from ._swimmer import Gait
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from .experiment import Comparison
     from .results import HeightMap
 
 SAMPLES = 400
@@ -66,4 +67,27 @@ def height_map(of: "HeightMap", ax: "Axes | None", **filling: Any) -> "Axes":
     for curve in of.zero_curves:
         vertices = np.array(curve.vertices)
         ax.plot(vertices[:, 0], vertices[:, 1], "k-", linewidth=1)
+    return ax
+
+
+def comparison(of: "Comparison", ax: "Axes | None", **points: Any) -> "Axes":
+    """Displacement of a cycle of each gait: measured with its interval, and predicted."""
+    ax = _axes(ax)
+    place = np.arange(len(of.gaits))
+    predicted = [1e3 * gait.predicted_m for gait in of.gaits]
+    ax.hlines(predicted, place - 0.35, place + 0.35, color="C1", label="predicted")
+    for number, gait in enumerate(of.gaits):
+        trials = [1e3 * trial.displacement_m for trial in gait.trials]
+        ax.plot([number + 0.15] * len(trials), trials, ".", color="0.6", markersize=4)
+    measured = [(number, gait) for number, gait in enumerate(of.gaits) if gait.measured_m is not None]
+    style: dict[str, Any] = {"fmt": "o", "color": "C0", "capsize": 3, "label": "measured", **points}
+    ax.errorbar(
+        [number for number, _ in measured],
+        [1e3 * gait.measured_m for _, gait in measured],
+        [1e3 * (gait.interval_m or 0.0) for _, gait in measured],
+        **style,
+    )
+    ax.set_xticks(place, [gait.gait for gait in of.gaits], rotation=45, ha="right")
+    ax.set_ylabel("displacement of a cycle [mm]")
+    ax.legend()
     return ax

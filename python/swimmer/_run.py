@@ -23,6 +23,14 @@ class Doubt(UserWarning):
     """What a command says beside its answer: something doubtful about what it was given, or about what it found."""
 
 
+def warn(notes: Sequence[str], *, stacklevel: int) -> None:
+    """Turns what a call reports apart from its result into warnings."""
+    for note in notes:
+        kind, _, text = note.partition(": ")
+        if kind in ("warning", "note"):
+            warnings.warn(text, Doubt, stacklevel=stacklevel)
+
+
 class Run:
     """One command, with a folder for what is not yet in a file; the folder goes with it.
 

@@ -1,11 +1,30 @@
 import os
 from collections.abc import Sequence
-from typing import final
+from typing import Any, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["BadInput", "Error", "Failed", "Gait", "Swimmer", "__version__", "options", "run", "run_captured"]
+__all__ = [
+    "BadInput",
+    "Error",
+    "Failed",
+    "Gait",
+    "RobotLink",
+    "RobotSettings",
+    "Swimmer",
+    "__version__",
+    "certify",
+    "experiment_plan",
+    "experiment_report",
+    "experiment_run",
+    "experiment_status",
+    "height_map",
+    "options",
+    "run",
+    "run_captured",
+    "simulate",
+]
 
 __version__: str
 
@@ -173,6 +192,118 @@ class Gait:
         """Writes its gait file, in the place of one that is there."""
     def __eq__(self, other: object, /) -> bool: ...
     def __hash__(self) -> int: ...
+
+@final
+class RobotSettings:
+    """Port of a robot, and the cameras that see it."""
+
+    def __new__(
+        cls,
+        ports: Sequence[str],
+        *,
+        swimmer: Swimmer | None,
+        track: str | None,
+        front: str | None,
+        back: str | None,
+        body: str | None,
+        facing: float | None,
+        key: str | os.PathLike[str] | None,
+        baud: int | None,
+        log: str | os.PathLike[str] | None,
+        seed: int,
+    ) -> RobotSettings: ...
+
+@final
+class RobotLink:
+    """A robot that was greeted. Calls release the interpreter's lock; Ctrl-C stops the robot and raises `KeyboardInterrupt`.
+
+    Each call returns its value and its messages.
+    """
+
+    def __new__(cls, settings: RobotSettings) -> RobotLink: ...
+    @property
+    def port(self) -> str:
+        """Name of the port."""
+    @property
+    def notes(self) -> list[str]:
+        """Messages of the connection."""
+    def status(self) -> tuple[dict[str, Any], list[str]]:
+        """State of the robot."""
+    def upload(self, gait: Gait, period: float) -> tuple[dict[str, Any], list[str]]:
+        """Checks, forecasts and uploads a gait."""
+    def play(self, cycles: int | None, period: float) -> tuple[None, list[str]]:
+        """Begins a play."""
+    def wait(self) -> tuple[dict[str, Any], list[str]]:
+        """Waits for the end of a play."""
+    def stop(self) -> tuple[dict[str, Any], list[str]]:
+        """Stops, also while another thread is in a call, which then fails."""
+    def next_telemetry(self) -> tuple[dict[str, Any] | None, list[str]]:
+        """Next report of the robot; None if there is none within a second."""
+    def next_poses(self) -> tuple[list[tuple[float, float, float, float, float, float]], list[str]]:
+        """Next poses by the cameras: time, x, y, heading, and the deviations of position and heading of each."""
+    def is_moving(self) -> bool:
+        """True if a play has begun and no report has shown its end."""
+    def now(self) -> float:
+        """Time on the port's clock [s]."""
+    def close(self) -> list[str]:
+        """Stops the robot if it moves, and closes the port; nothing happens the second time."""
+
+def simulate(
+    swimmer: Swimmer | str | os.PathLike[str],
+    gait: Gait | str | os.PathLike[str],
+    cycles: int,
+    period: float | None,
+    played: bool,
+    knots: int | None,
+    pulse_step: int | None,
+) -> tuple[
+    dict[str, Any],
+    tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
+    list[str],
+]:
+    """One cycle of a gait, and the trajectory of all `cycles`. With `played` also a forecast on the robot."""
+
+def certify(
+    swimmer: Swimmer | str | os.PathLike[str],
+    gait: Gait | str | os.PathLike[str],
+    objective: str | None,
+    fixed_period: bool,
+    max_angle: float | str | None,
+    min_angle: float | str | None,
+    sector: bool,
+    no_overlap: bool,
+    clearance: float | None,
+    playable: bool,
+) -> tuple[dict[str, Any], list[str]]:
+    """Certificate of a gait."""
+
+def height_map(
+    swimmer: Swimmer | str | os.PathLike[str],
+    row: str,
+    max_angle: float | str,
+    gaits: Sequence[Gait | str | os.PathLike[str]],
+) -> tuple[dict[str, Any], NDArray[np.float64], NDArray[np.float64], list[str]]:
+    """A component of the height function: document, angles of the nodes, and heights."""
+
+def experiment_plan(
+    spec: str | os.PathLike[str], folder: str | os.PathLike[str] | None
+) -> tuple[dict[str, Any], list[str]]:
+    """Computes the gaits of a spec, and fixes the order of the trials."""
+
+def experiment_run(
+    spec: str | os.PathLike[str], folder: str | os.PathLike[str] | None, robot: RobotSettings
+) -> tuple[dict[str, Any], list[str]]:
+    """Plays the trials that are left. Ctrl-C stops the robot, and the same call goes on."""
+
+def experiment_status(
+    spec: str | os.PathLike[str], folder: str | os.PathLike[str] | None
+) -> tuple[dict[str, Any], list[str]]:
+    """Progress by the journal."""
+
+def experiment_report(
+    spec: str | os.PathLike[str], folder: str | os.PathLike[str] | None
+) -> tuple[dict[str, Any], list[str]]:
+    """Compares the gaits, and writes report.json and report.html."""
 
 def run_captured(words: Sequence[str | os.PathLike[str]]) -> tuple[str, list[str]]:
     """The JSON document of a command, and the warnings that it gave.

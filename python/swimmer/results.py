@@ -1,6 +1,7 @@
 """What the functions return: frozen, with the JSON keys of the command line as attributes."""
 
 import html
+import math
 import os
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -226,6 +227,9 @@ def _frozen(value: Any) -> Any:
         return Result(value)
     if isinstance(value, list | tuple):
         return tuple(_frozen(item) for item in value)
+    # As in JSON: a number that is not defined is missing.
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
     return value
 
 

@@ -1,3 +1,5 @@
+from pathlib import Path
+
 import numpy as np
 import pytest
 import swimmer as sw
@@ -34,3 +36,9 @@ def pair(request: pytest.FixtureRequest) -> tuple[sw.Swimmer, Robot]:
 @pytest.fixture(scope="session")
 def shapes() -> np.ndarray:
     return np.random.default_rng(1).uniform(-2.8, 2.8, (200, 2))
+
+
+@pytest.fixture(scope="session")
+def straight() -> Path:
+    """Gaits that join at the straight shape, to drive the robot with."""
+    return Path(__file__).parents[2] / "experiment" / "tests" / "straight"
