@@ -13,7 +13,7 @@ MISTAKES: dict[str, tuple[Callable[[], object], str]] = {
     "negative angle": (lambda: sw.optimize.displacement("purcell", max_angle=-1.0), "max_angle"),
     "angle that is no number": (lambda: sw.optimize.turning("purcell", max_angle="wide"), "max_angle"),
     "sign": (lambda: sw.optimize.displacement("purcell", sign="plus"), "sign"),  # type: ignore[arg-type]
-    "missing rate": (lambda: sw.optimize.speed("purcell"), "max_rate"),  # type: ignore[call-arg]
+    "missing rate": (lambda: sw.optimize.speed("purcell"), "max_rate"),
     "rate in degrees": (lambda: sw.optimize.speed("robot", max_rate=200.0), r"max_rate.*200\.0deg"),
     "negative clearance": (lambda: sw.certify("robot", "circle:1", clearance=-0.1), "clearance = -0.1"),
     "angle of a certificate": (lambda: sw.certify("robot", "circle:1", max_angle=90.0), r"max_angle.*90\.0deg"),
