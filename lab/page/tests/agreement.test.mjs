@@ -75,8 +75,9 @@ test("the module agrees with the command", () => {
 
 /** Keys that only one side has: the module has no clock and no paths, and returns the text of the gait file. */
 const ONE_SIDED = { seconds: "command", gait: "module" };
-/** Figures near rounding, by which a certificate and a solver judge themselves: their verdicts are compared. */
-const NEAR_ROUNDING = ["value", "residual", "power_variation"];
+/** Figures near rounding, by which a certificate and a solver judge themselves (a tolerance may be that of a computed figure): names and
+ * verdicts are compared. */
+const NEAR_ROUNDING = ["value", "tolerance", "residual", "power_variation"];
 
 /** The same documents, except for the last digits. */
 function alike(told, expected, what) {
