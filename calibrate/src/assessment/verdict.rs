@@ -55,8 +55,9 @@ const CAUTION_PULL: f64 = 2.5;
 const HIGHEST_PULL: f64 = 3.0;
 /// Standard errors of a run's length scale that are worth a caution.
 const RUN_SCALE: f64 = 4.0;
-/// Misfit of the largest value, as a share, that is worth a caution, and that makes an answer useless.
-const MISFITS: f64 = 0.005;
+/// Misfit of the largest value, as a share, that is worth a caution, and that makes an answer useless. Walls 20 cm away that no file
+/// states leave .0035 to .0041 where nothing else warns (`campaigns::walls`); there the estimates are up to two half widths off.
+const MISFITS: f64 = 0.003;
 const HOPELESS: f64 = 0.03;
 /// Half widths between an explanation's estimate and the recommended one that are worth a caution.
 const FAR_OFF: f64 = 1.5;
@@ -152,12 +153,18 @@ pub(super) fn verdict(
         } else {
             Verdict::Caution
         };
+        let tracked = found.runs.iter().any(|run| !run.is_reported());
         let reason = format!(
-            "the model does not fit: {} of the runs misses it by {:.1} % of the largest, {:.0} times its scatter, whatever of the known \
-             errors is let move",
+            "the model does not fit: {} of the runs misses it by {:.1} % of the largest, {:.0} times its scatter, although every known \
+             error may vary{}",
             misfit.quantity,
             100.0 * misfit.share,
-            misfit.ratio
+            misfit.ratio,
+            if tracked && found.known.tank.is_none() {
+                "; walls within 30 cm of the runs do this: if there are any, state the tank under [known]"
+            } else {
+                ""
+            }
         );
         reasons.insert(0, (of_misfit, reason));
         verdict.max(of_misfit)

@@ -57,15 +57,47 @@ fn walls_that_are_stated_are_fitted() {
 }
 
 #[test]
-fn walls_that_nothing_states_are_no_reason_for_wrong_trust() {
+fn walls_that_nothing_states_are_named() {
+    // With a caution from a misfit of .5 % only, seed 4 had `trust` 1.7 half widths from the truth.
     for seed in [3, 4] {
         let judged = Judged::at(&in_a_tank(seed), FitOptions::default().level).unwrap();
         println!("{:.2} half widths; {}", off(&judged), judged.line());
-        let trusted = judged.assessment.verdict == Verdict::Trust;
-        assert!(!trusted || off(&judged) <= 2.0, "{}", judged.line());
+        assert!(judged.assessment.verdict != Verdict::Trust);
+        assert!(judged.names("walls within 30 cm"), "{}", judged.line());
         // Without a tank there is nothing to fit.
         assert!(fit_nuisance(&judged.found, &[NuisanceParameter::Walls]).is_err());
     }
+}
+
+/// Ten campaigns next to walls that nothing states, of which none is trusted, and thirty each with declared errors and with small errors
+/// that nothing states, of which few are called misfits.
+#[test]
+#[ignore = "seventy campaigns"]
+fn misfits_are_next_to_walls() {
+    let near = (1..=10).map(|seed| ("next to walls", in_a_tank(seed)));
+    let declared = (1..=30).map(|seed| ("declared errors", judged::with_systematics(seed)));
+    let small = (1..=30).map(|seed| ("small errors", judged::small_errors(seed)));
+    let mut misfits = 0;
+    for (kind, lab) in near.chain(declared).chain(small) {
+        let judged = Judged::at(&lab, FitOptions::default().level).unwrap();
+        let misfit = judged.assessment.goodness.misfit;
+        println!(
+            "{kind}: {:.2} half widths; {misfit:?}; {}",
+            off(&judged),
+            judged.line()
+        );
+        if kind == "next to walls" {
+            assert!(
+                judged.assessment.verdict != Verdict::Trust,
+                "{}",
+                judged.line()
+            );
+        } else {
+            misfits += u32::from(judged.names("walls within 30 cm"));
+        }
+    }
+    println!("{misfits} of 60 campaigns without walls are called misfits");
+    assert!(misfits <= 3);
 }
 
 /// The laboratory's images: fluid rests at the wall, and a small sphere is slowed as Happel and Brenner have it.
