@@ -121,6 +121,29 @@ impl Field {
         }
     }
 
+    /// Name in words, with its symbol at the end, for axes of figures.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Middle => "middle link l₀",
+            Self::Side => "side links l₁",
+            Self::Front => "front link l₁",
+            Self::Back => "back link l₂",
+            Self::Ratio => "ratio of the links l₁/l₀",
+            Self::Chi => "drag ratio χ",
+            Self::LogAspect => "logarithm of the links' aspect ratio",
+            Self::HalfThickness => "half thickness of the links",
+            Self::OverViscosity => "tangential drag over viscosity",
+            Self::Sphere => "radius of the sphere r_s",
+            Self::MaxAngle => "largest joint angle",
+            Self::MinAngle => "least joint angle",
+            Self::Clearance => "clearance of the side links",
+            Self::Sector => "bound to a sector",
+            Self::NoOverlap => "side links do not cross",
+            Self::MaxRate => "servo rate",
+            Self::Objective => "objective",
+        }
+    }
+
     /// Quantity by which bare numbers are checked for a wrong unit. Returns `None` if there is no such check.
     pub(crate) fn quantity(self) -> Option<Quantity> {
         match self {

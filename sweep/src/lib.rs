@@ -67,7 +67,7 @@ mod warm;
 
 pub use error::SweepError;
 pub use field::Field;
-pub use map::{Doubt, DoubtKind, Map, MapAxis, Pareto, Quantity, Slice, doubts, map};
+pub use map::{Doubt, DoubtKind, Map, MapAxis, Pareto, PlanAxis, Quantity, Slice, doubts, map};
 pub use merge::{Merged, merge};
 pub use objective::Aim;
 pub use plan::{Axis, Design, Plan, Scale, Values};

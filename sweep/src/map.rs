@@ -40,6 +40,8 @@ impl Slice {
 pub struct MapAxis {
     /// Name of the field.
     pub name: &'static str,
+    /// Name in words.
+    pub words: &'static str,
     /// Its unit.
     pub unit: &'static str,
     /// Values in the order of the plan.
@@ -51,6 +53,8 @@ pub struct MapAxis {
 pub struct Quantity {
     /// Its name.
     pub name: &'static str,
+    /// Name in words.
+    pub words: &'static str,
     /// Its unit.
     pub unit: &'static str,
     /// `None` if the design has no gait.
@@ -58,7 +62,7 @@ pub struct Quantity {
 }
 
 /// Design on the Pareto front of speed and efficiency.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Pareto {
     /// Key of the task.
     pub key: u64,
@@ -66,6 +70,19 @@ pub struct Pareto {
     pub speed: f64,
     /// ξ.
     pub efficiency: f64,
+    /// Values of the plan's axes, in the order of [`Map::plan_axes`].
+    pub design: Vec<f64>,
+}
+
+/// Axis of the plan.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct PlanAxis {
+    /// Name in the spec.
+    pub name: &'static str,
+    /// Name in words.
+    pub words: &'static str,
+    /// Unit; empty for a number.
+    pub unit: &'static str,
 }
 
 /// Map, as `sweep map --export` writes it.
@@ -89,25 +106,64 @@ pub struct Map {
     pub folds: Vec<Vec<[f64; 2]>>,
     /// Pareto front of the whole plan, slowest first; empty without servo rates.
     pub pareto: Vec<Pareto>,
+    /// Axes of the whole plan, without that of the objective.
+    pub plan_axes: Vec<PlanAxis>,
     /// Number of designs of the whole plan without a gait.
     #[serde(skip)]
     pub designs_without_gait: u64,
 }
 
-type MapQuantity = (&'static str, &'static str, fn(&Row) -> Option<f64>);
+/// Definition of a mapped quantity.
+struct Column {
+    name: &'static str,
+    words: &'static str,
+    unit: &'static str,
+    value: fn(&Row) -> Option<f64>,
+}
 
-const QUANTITIES: [MapQuantity; 7] = [
-    ("displacement_over_length", "", |row| {
-        row.displacement_over_length
-    }),
-    ("efficiency", "", |row| row.efficiency),
-    ("speed_over_length_per_s", "1/s", |row| {
-        row.speed_over_length_per_s
-    }),
-    ("amplitude_rad", "rad", |row| row.amplitude_rad),
-    ("rotation_rad", "rad", |row| row.rotation_rad),
-    ("lateral_over_length", "", |row| row.lateral_over_length),
-    ("period_s", "s", |row| row.period_s),
+const COLUMNS: [Column; 7] = [
+    Column {
+        name: "displacement_over_length",
+        words: "displacement |X|/L",
+        unit: "",
+        value: |row| row.displacement_over_length,
+    },
+    Column {
+        name: "efficiency",
+        words: "Lighthill efficiency ξ",
+        unit: "",
+        value: |row| row.efficiency,
+    },
+    Column {
+        name: "speed_over_length_per_s",
+        words: "speed |d|/(L T)",
+        unit: "1/s",
+        value: |row| row.speed_over_length_per_s,
+    },
+    Column {
+        name: "amplitude_rad",
+        words: "largest joint angle of the gait",
+        unit: "rad",
+        value: |row| row.amplitude_rad,
+    },
+    Column {
+        name: "rotation_rad",
+        words: "rotation of a cycle",
+        unit: "rad",
+        value: |row| row.rotation_rad,
+    },
+    Column {
+        name: "lateral_over_length",
+        words: "sideways displacement Y/L",
+        unit: "",
+        value: |row| row.lateral_over_length,
+    },
+    Column {
+        name: "period_s",
+        words: "shortest period",
+        unit: "s",
+        value: |row| row.period_s,
+    },
 ];
 
 /// Returns the map of a slice of a finished grid.
@@ -175,12 +231,14 @@ pub fn map(plan: &Plan, folder: &Path, slice: &Slice) -> Result<Map, SweepError>
         });
     }
     keep_front(&mut front);
+    name_designs(plan, &mut front);
     let cells: Vec<Vec<Row>> = cells
         .into_iter()
         .map(|row| row.into_iter().flatten().collect())
         .collect();
     let axes = [x, y].map(|axis| MapAxis {
         name: axis.name.name(),
+        words: axis.name.words(),
         unit: axis.name.unit(),
         values: (0..axis.count()).map(|index| axis.value(index)).collect(),
     });
@@ -188,12 +246,13 @@ pub fn map(plan: &Plan, folder: &Path, slice: &Slice) -> Result<Map, SweepError>
         format: "swimmer-sweep-map 1",
         plan: plan.hash(),
         objective: objective(plan, slice),
-        quantities: QUANTITIES
+        quantities: COLUMNS
             .into_iter()
-            .map(|(name, unit, value)| Quantity {
-                name,
-                unit,
-                values: each(&cells, value),
+            .map(|column| Quantity {
+                name: column.name,
+                words: column.words,
+                unit: column.unit,
+                values: each(&cells, column.value),
             })
             .filter(|quantity| quantity.values.iter().flatten().any(Option::is_some))
             .collect(),
@@ -202,8 +261,35 @@ pub fn map(plan: &Plan, folder: &Path, slice: &Slice) -> Result<Map, SweepError>
         folds: folds(&axes, &cells),
         axes,
         pareto: front,
+        plan_axes: plan_axes(plan),
         designs_without_gait: without,
     })
+}
+
+/// Sets the axes' values of each design.
+fn name_designs(plan: &Plan, front: &mut [Pareto]) {
+    for one in front {
+        one.design = plan
+            .indices(one.key)
+            .into_iter()
+            .zip(plan.axes())
+            .filter(|(_, axis)| axis.name != Field::Objective)
+            .map(|(index, axis)| axis.value(index))
+            .collect();
+    }
+}
+
+/// Axes of the plan without that of the objective.
+fn plan_axes(plan: &Plan) -> Vec<PlanAxis> {
+    plan.axes()
+        .iter()
+        .filter(|axis| axis.name != Field::Objective)
+        .map(|axis| PlanAxis {
+            name: axis.name.name(),
+            words: axis.name.words(),
+            unit: axis.name.unit(),
+        })
+        .collect()
 }
 
 /// Objective of the gaits of a slice.
@@ -239,6 +325,7 @@ fn pareto(row: &Row) -> Option<Pareto> {
         key: row.key,
         speed: row.speed_over_length_per_s?,
         efficiency: row.efficiency?,
+        design: Vec::new(),
     })
 }
 
@@ -356,6 +443,7 @@ mod tests {
             key,
             speed,
             efficiency,
+            design: Vec::new(),
         };
         let mut front = vec![
             one(0, 1.0, 0.5),

@@ -239,6 +239,22 @@ fn a_map_is_drawn_and_exported() {
     );
     assert_eq!(map["quantities"][0]["values"].as_array().unwrap().len(), 12);
     assert!(number(&map["pareto"][0], "efficiency") > 0.0);
+    // A design of the front is named by its place on the plan's axes, and the map has the same numbers there.
+    let axes = map["plan_axes"].as_array().unwrap();
+    let at = |name: &str| axes.iter().position(|axis| axis["name"] == name).unwrap();
+    let design = &map["pareto"][0]["design"];
+    let cell = |axis: usize| {
+        let place = &map["axes"][axis];
+        let value = &design[at(place["name"].as_str().unwrap())];
+        let values = place["values"].as_array().unwrap();
+        values.iter().position(|one| one == value).unwrap()
+    };
+    let quantities = map["quantities"].as_array().unwrap();
+    let of = |name: &str| quantities.iter().find(|one| one["name"] == name).unwrap();
+    assert_eq!(
+        of("efficiency")["values"][cell(1)][cell(0)],
+        map["pareto"][0]["efficiency"]
+    );
     typed(folder.path(), "sweep map out --at sphere.radius=x -o y.svg").with_status(2);
     typed(folder.path(), "sweep map out --up drag.chi").with_status(2);
 }
