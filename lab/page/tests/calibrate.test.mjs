@@ -280,3 +280,27 @@ for (const [name, launch] of Object.entries(BROWSERS)) {
     await browser.close();
   });
 }
+
+test("the sample is fitted, and an error is cleared", async (context) => {
+  const browser = await BROWSERS.chromium();
+  context.after(() => browser.close());
+  const tab = await Tab.open(browser, { hash: "#room=calibrate" });
+  const press = (name) => tab.evaluate((name) => [...document.querySelectorAll("#calibrate button")].find((one) => one.textContent === name).click(), name);
+  const bad = join(OUT, "no-track.csv");
+  writeFileSync(bad, "nothing\n");
+  await tab.drop(bad);
+  await tab.until(() => document.querySelector("#calibrate [role=alert]") !== null, undefined, "an error");
+  await press("Clear");
+  assert.equal(await tab.text("#calibrate [role=alert]"), null);
+  await press("Try the sample");
+  await tab.until(() => document.querySelector("#calibrate .verdict, #calibrate [role=alert]") !== null, undefined, "a verdict");
+  await tab.settled();
+  assert.equal(await tab.text("#calibrate [role=alert]"), null);
+  // The values with which the sample's tracks were simulated.
+  const { evidence } = JSON.parse(await tab.text("#fit-exact"));
+  const { sphere_radius_m: radius, chi } = evidence.likelihood.estimate;
+  assert.ok(Math.abs(radius - 0.0515) < 5e-4 && Math.abs(chi - 2.72) < 0.05, `${radius}, ${chi}`);
+  await tab.page.screenshot({ path: join(SCREENSHOTS, "calibrate-sample.png"), fullPage: true });
+  assert.deepEqual(tab.said, []);
+  await tab.close();
+});

@@ -1,6 +1,9 @@
 // What follows a hand, measured in the page by its own clock. Printed, never asserted: machines differ.
 
+import { statSync } from "node:fs";
+import { fileURLToPath } from "node:url";
 import { BROWSERS, Tab } from "./browsers.mjs";
+import { PAGE } from "./setting.mjs";
 
 const browser = await BROWSERS.chromium();
 const lines = [];
@@ -44,7 +47,16 @@ for (const swimmer of ["purcell", "robot"]) {
     };
     requestAnimationFrame(step);
   });
+  // Time of the page's own thread in scripts and in everything (layout, paint), by the browser's count.
+  const devtools = await tab.page.context().newCDPSession(tab.page);
+  await devtools.send("Performance.enable");
+  const spent = async () => Object.fromEntries((await devtools.send("Performance.getMetrics")).metrics.map(({ name, value }) => [name, value * 1000]));
+  const [framesBefore, before] = [await tab.evaluate(() => window.frames_.length), await spent()];
   await tab.drag('.handles circle[data-index="1"]', [60, -40], 90);
+  const [framesAfter, after] = [await tab.evaluate(() => window.frames_.length), await spent()];
+  const aFrame = (name) => (after[name] - before[name]) / (framesAfter - framesBefore);
+  line(`${swimmer}: JavaScript a frame while dragging, mean`, [aFrame("ScriptDuration")], 8);
+  line(`${swimmer}: main thread a frame while dragging, mean`, [aFrame("TaskDuration")], 16.7);
   line(`${swimmer}: displacement of a 192-sample curve`, await told("net"), 2);
   line(`${swimmer}: all else that is read of it`, await told("simulate"), "");
   line(`${swimmer}: full certificate, in a worker`, await told("certify"), 40);
@@ -67,3 +79,4 @@ for (const swimmer of ["purcell", "robot"]) {
 }
 await browser.close();
 console.table(lines);
+console.log(`page: ${statSync(fileURLToPath(PAGE)).size} bytes of 1700000`);

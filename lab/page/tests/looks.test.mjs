@@ -57,6 +57,16 @@ function overlaps() {
   return pairs;
 }
 
+/** Rules of axe that the page breaks, and where. */
+async function violations(tab) {
+  // As an expression of the debugger: the page's policy allows no script from elsewhere.
+  await tab.evaluate(AXE);
+  return tab.evaluate(async () => {
+    const { violations } = await axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "best-practice"] });
+    return violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ target }) => target.join(" ")).join(", ")}`);
+  });
+}
+
 for (const [way, size] of Object.entries(WAYS)) {
   test(`every room, ${way}: no overflow, no overlap, nothing that axe finds`, async () => {
     const tab = await Tab.open(browser, size);
@@ -65,15 +75,43 @@ for (const [way, size] of Object.entries(WAYS)) {
       const overflow = await tab.evaluate(() => document.documentElement.scrollWidth - innerWidth);
       assert.ok(overflow <= 0, `${room}: ${overflow} px wider than the screen`);
       assert.deepEqual(await tab.evaluate(overlaps), [], room);
-      // As an expression of the debugger: the page's policy allows no script from elsewhere.
-      await tab.evaluate(AXE);
-      const violations = await tab.evaluate(async () => {
-        const { violations } = await axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "best-practice"] });
-        return violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ target }) => target.join(" ")).join(", ")}`);
-      });
-      assert.deepEqual(violations, [], room);
+      assert.deepEqual(await violations(tab), [], room);
       await tab.page.screenshot({ path: join(SCREENSHOTS, `${room}-${way}.png`), fullPage: true });
     }
+    await tab.close();
+  });
+}
+
+/** Fills each room as a user would, and waits until it is full. */
+const FILLED = {
+  drive: async (tab) => {
+    await tab.evaluate(() => document.querySelector("#connect-twin").click());
+    await tab.until(() => document.querySelector("#preflight .good") !== null && document.querySelector("#panel-drive .plots canvas") !== null, undefined, "a robot");
+    await tab.evaluate(() => document.querySelector("#set-up")?.setAttribute("open", ""));
+  },
+  calibrate: async (tab) => {
+    await tab.evaluate(() => [...document.querySelectorAll("#calibrate button")].find((one) => one.textContent === "Try the sample").click());
+    await tab.until(() => document.querySelector("#calibrate .verdict, #calibrate [role=alert]") !== null, undefined, "a verdict");
+  },
+  maps: async (tab) => {
+    await tab.evaluate(() => [...document.querySelectorAll("#maps button")].find((one) => one.textContent === "Try the sample").click());
+    await tab.until(() => document.querySelector("#pareto") !== null, undefined, "a map");
+  },
+};
+
+for (const [way, size] of Object.entries(WAYS)) {
+  test(`every room in use, ${way}: no overflow, nothing that axe finds`, async () => {
+    const tab = await Tab.open(browser, size);
+    for (const [room, fill] of Object.entries(FILLED)) {
+      await enter(tab, room);
+      await fill(tab);
+      await tab.settled();
+      const overflow = await tab.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+      await tab.page.screenshot({ path: join(SCREENSHOTS, `${room}-in-use-${way}.png`), fullPage: true });
+      assert.ok(overflow <= 0, `${room}: ${overflow} px wider than the screen`);
+      assert.deepEqual(await violations(tab), [], room);
+    }
+    assert.deepEqual(tab.said, []);
     await tab.close();
   });
 }

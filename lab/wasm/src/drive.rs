@@ -1,4 +1,4 @@
-//! Calls of the Drive tab: the host's session, the twin in the page, and a decoder for spectator pages.
+//! Calls of the Drive tab: the host's session, the twin in the page, recordings, and a decoder for spectator pages.
 //!
 //! A session has no port here: the page transports its bytes over Web Serial, over a WebSocket, or to the twin in the page. The
 //! binary arguments of a call begin with the number of the object and the page's time, `[u32][f64 s]`, little-endian.
@@ -8,6 +8,7 @@ mod host;
 mod memory_port;
 mod overheard;
 mod preflight;
+mod recordings;
 mod robot;
 
 use std::time::Duration;
@@ -25,6 +26,7 @@ pub const CALLS: &[(&str, Call)] = &[
     ("session link", host::link),
     ("session log", host::log),
     ("session close", close),
+    ("recordings", recordings::read),
     ("overhear open", overheard::open),
     ("overhear step", overheard::step),
     ("overhear close", close),

@@ -4,6 +4,7 @@ use link_protocol::Direction;
 use serde_json::{Value, json};
 use swimmer_files::read_link_log;
 use swimmer_lab::calls::{CallOutput, Lab, call};
+use swimmer_model::Pose;
 
 /// Page: module, clock, a session and its robot.
 struct Page {
@@ -200,6 +201,58 @@ fn the_log_is_a_link_log() {
 }
 
 #[test]
+fn a_play_is_recorded_with_joints_and_pose() {
+    let mut page = Page::open(None);
+    page.play();
+    let began = 1e9 + page.now - 8.0;
+    let began_to_stop = page.stands();
+    let own = page
+        .events
+        .iter()
+        .rfind(|event| event["event"] == "telemetry");
+    let own = &own.unwrap()["telemetry"]["pose"];
+    let playing = json!([own["x"], own["y"], own["theta"]]);
+    let stopped = page.request(&json!("Stop"));
+    assert_eq!(stopped["event"], "answered", "{stopped}");
+    for _ in 0..300 {
+        page.step();
+    }
+    let stands = page.stands();
+    let recordings = |page: &mut Page, from_s: Value| {
+        let question = json!({ "number": page.session, "from_s": from_s }).to_string();
+        let log = bytes(call(&mut page.lab, b"session log", question.as_bytes()).unwrap());
+        document(call(&mut page.lab, b"recordings", &log).unwrap())
+    };
+    let whole = recordings(&mut page, Value::Null);
+    let [play] = whole.as_array().unwrap().as_slice() else {
+        panic!("one play: {whole}");
+    };
+    assert_eq!(play["ended"], true);
+    assert_eq!(play["cycles"], 1);
+    assert!((play["began_s"].as_f64().unwrap() - began).abs() < 4.0);
+    let samples = play["samples"].as_array().unwrap();
+    assert!(samples.len() > 100, "{}", samples.len());
+    // The robot's own model begins with the samples, and the joints on the circle.
+    assert!(samples[0]["pose"][0].as_f64().unwrap().abs() < 1e-3);
+    assert!(samples[0]["phi_rad"][0].as_f64().unwrap() > 0.3);
+    // From the stop on, the robot's own model moves as the swimmer in the tank.
+    let pose = |value: &Value| {
+        let [x, y, theta] = [0, 1, 2].map(|axis| value[axis].as_f64().unwrap());
+        Pose::new(x, y, theta)
+    };
+    let own = pose(&playing).inverse() * pose(&samples.last().unwrap()["pose"]);
+    let true_motion = pose(&began_to_stop["pose"]).inverse() * pose(&stands["pose"]);
+    let off = (own.position() - true_motion.position()).norm();
+    assert!(
+        off < 1e-3 && true_motion.position().norm() > 1e-3,
+        "{own:?} {true_motion:?}"
+    );
+    // A log that begins after the play holds none.
+    let after = json!(page.now - 0.1);
+    assert_eq!(recordings(&mut page, after), json!([]));
+}
+
+#[test]
 fn another_page_overhears_the_telemetry() {
     let mut page = Page::open(None);
     page.play();
@@ -264,4 +317,10 @@ fn preflight_predicts_the_play_of_the_robot() {
     let output = page.ask("preflight", &question);
     assert!(output["refused"].is_null(), "{output}");
     assert!(output["loss_share"].as_f64().unwrap().abs() < 0.1);
+    let end = output["path"].as_array().unwrap().last().unwrap();
+    for axis in 0..2 {
+        let net = output["displacement_m"][axis].as_f64().unwrap();
+        assert!((end[axis].as_f64().unwrap() - net).abs() < 2e-6, "{end}");
+    }
+    assert!((end[2].as_f64().unwrap() - output["rotation_rad"].as_f64().unwrap()).abs() < 2e-6);
 }

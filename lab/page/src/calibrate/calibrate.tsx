@@ -3,11 +3,12 @@
 import "./calibrate.css";
 import { download } from "../files/download.ts";
 import { useDrop } from "../files/drop.ts";
+import { DropZone } from "../files/drop-zone.tsx";
 import { OpenButton } from "../files/open-button.tsx";
 import type { FitOutput } from "./outputs.ts";
 import { OverAmplitude, Paths, Profiles, Residuals, Ridge, WithoutRun } from "./figures.tsx";
 import { Advice, Further } from "./nuisance.tsx";
-import { advice, assessment, clear, doing, evidence, fit, further, open, problem, stop, tracks } from "./model.ts";
+import { advice, assessment, clear, doing, evidence, fit, further, open, problem, received, stop, tracks, trySample } from "./model.ts";
 import { Budget, Cycles, Goodness, Known, Parameters, Runs, Servos, Table } from "./tables.tsx";
 
 const openAll = (files: File[]) => void open(files);
@@ -19,27 +20,27 @@ export function Calibrate() {
     <div id="calibrate" aria-busy={busy !== null}>
       <div class="toolbar">
         <OpenButton id="open-campaign" name="Open…" accept=".toml,.csv,.txt,.tsv,.json,.trc,.gait,.mcap" open={openAll} />
-        <button onClick={clear} disabled={tracks.value.length === 0 && !fit.value && problem.value === ""}>Clear</button>
+        <button onClick={clear} disabled={received.value.length === 0 && problem.value === ""}>Clear</button>
         <button disabled={!fit.value} onClick={() => fit.value && download("fitted-swimmer.toml", fit.value.swimmer, "application/toml")}>Save fitted swimmer</button>
         {busy && <button onClick={stop}>Stop</button>}
         <span class="soft" role="status">{busy ? `${busy.what} …${busy.seconds ? ` ${busy.seconds} s` : ""}` : ""}</span>
         {problem.value && <span class="error" role="alert">{problem}</span>}
       </div>
-      {!busy && tracks.value.length === 0 && !fit.value && <DropZone />}
+      {!busy && tracks.value.length === 0 && !fit.value && <Invitation />}
       {fit.value && <Fitted fit={fit.value} />}
       {tracks.value.length > 0 && <Tracks />}
     </div>
   );
 }
 
-/** Invitation while no file is open. */
-function DropZone() {
+/** Invitation while no tracking file is open. */
+function Invitation() {
   return (
-    <section class="drop-zone" aria-label="Files to calibrate with">
-      <h2>Drop files here, or press Open…</h2>
+    <DropZone name="Files to calibrate with" sample={() => void trySample()}>
       <p>A campaign file (campaign.toml) with all files that it names: r<sub>s</sub> and χ are fitted. Tracking files alone: their points, rates and gaps are listed.</p>
-      <p class="soft">To try it, run <code>swimmer demo -o demo-out</code> and drop campaign.toml, start.toml and the circle-….csv of that folder. The files stay on this computer.</p>
-    </section>
+      <p class="soft">The sample is a campaign of five circles by a simulated robot; its fit should find r<sub>s</sub> = 51.5 mm and χ = 2.72. The folder of <code>swimmer demo -o demo-out</code> is another.</p>
+      {received.value.length > 0 && <p role="status">Here so far: {received.value.join(", ")}.</p>}
+    </DropZone>
   );
 }
 

@@ -24,19 +24,19 @@ interface OfACircle {
 const OF_A_CIRCLE: readonly OfACircle[] = [
   {
     title: "X over the amplitude",
-    name: "X [mm]",
+    name: "displacement X [mm]",
     measured: (run) => [run.x_m * (run.clockwise ? -1000 : 1000), (run.x_sd_m ?? 0) * 1000],
     predicted: (point) => point.x_m * 1000,
   },
   {
     title: "ΔY over the amplitude",
-    name: "ΔY [mm]",
+    name: "sway ΔY [mm]",
     measured: (run) => [run.delta_y_m * 1000, (run.delta_y_sd_m ?? 0) * 1000],
     predicted: (point) => point.delta_y_m * 1000,
   },
   {
     title: "Δθ over the amplitude",
-    name: "Δθ [°]",
+    name: "yaw Δθ [°]",
     measured: (run) => [degrees(run.delta_theta_rad), degrees(run.delta_theta_sd_rad ?? 0)],
     predicted: (point) => degrees(point.delta_theta_rad),
   },
@@ -73,8 +73,8 @@ function OneOverAmplitude({ of, runs, evidence }: { of: OfACircle; runs: readonl
 export function Profiles({ evidence: { profiles } }: { evidence: EvidenceOutput }) {
   return (
     <>
-      <Profile title="Profile of rₛ" name="rₛ [mm]" of={profiles.sphere_radius_m} factor={1000} />
-      <Profile title="Profile of χ" name="χ" of={profiles.chi} factor={1} />
+      <Profile title="Profile of rₛ" name="sphere radius rₛ [mm]" of={profiles.sphere_radius_m} factor={1000} />
+      <Profile title="Profile of χ" name="drag ratio χ" of={profiles.chi} factor={1} />
     </>
   );
 }
@@ -84,7 +84,7 @@ function Profile({ title, name, of: { points, threshold }, factor }: { title: st
   if (near.length < 2) return null;
   const to = scale(near.map(([value]) => value), near.map(([, height]) => height));
   return (
-    <Chart title={title} names={[name, "ln likelihood below its top"]} to={to}>
+    <Chart title={title} names={[name, "log likelihood below its top"]} to={to}>
       <path class="curve" d={line(near, to)} />
       <path class="curve faint" d={`M${MARGIN.left} ${to.y(threshold)}H${WIDTH - MARGIN.right}`} />
     </Chart>
@@ -92,7 +92,7 @@ function Profile({ title, name, of: { points, threshold }, factor }: { title: st
 }
 
 const placed = ({ sphere_radius_m, chi }: Pair) => [sphere_radius_m * 1000, chi] as const;
-const AXES: [string, string] = ["rₛ [mm]", "χ"];
+const AXES: [string, string] = ["sphere radius rₛ [mm]", "drag ratio χ"];
 
 /** Likelihood over both parameters, its joint regions (long and thin, because the parameters compensate each other) and the samples
 * of the bootstrap. */

@@ -3,6 +3,7 @@
 import { signal } from "@preact/signals";
 import { Lab, Latest } from "../wasm/lab.ts";
 import { type AdviceOutput, type AssessmentOutput, type EvidenceOutput, type FitOutput, type FitReply, type Holdings, type NuisanceOutput, withFigures } from "./outputs.ts";
+import { sample } from "./sample.ts";
 
 const lab = new Lab("robot");
 
@@ -29,6 +30,8 @@ export const stop = () => lab.stop(STOPPED);
 const STOPPED = "stopped; drop a file or open one to begin again";
 
 let dropped = new Map<string, Uint8Array>();
+/** Names of the files that are here. */
+export const received = signal<readonly string[]>([]);
 
 /** Files in the format of the module: length of the list, the list, the files. */
 function packed(files: readonly (readonly [string, Uint8Array])[]): Uint8Array {
@@ -75,10 +78,22 @@ export async function open(files: readonly File[]): Promise<void> {
   } catch (error) {
     unread.push(reason(error));
   }
+  received.value = [...dropped.keys()];
   problem.value = unread.join("; ");
   opening = false;
   doing.value = null;
   if (also.value.length > 0) fitting.give(also.value);
+}
+
+/** Opens the campaign of a simulated robot. */
+export async function trySample(): Promise<void> {
+  clear();
+  begin("simulating the sample's tracks");
+  try {
+    await open(await sample());
+  } catch (error) {
+    [problem.value, doing.value] = [reason(error), null];
+  }
 }
 
 /** Selects a word of `--fit-also` or removes the selection. */
@@ -104,7 +119,7 @@ const fitting = new Latest<readonly string[]>(async (words) => {
 
 export function clear(): void {
   dropped = new Map();
-  [tracks.value, problem.value] = [[], ""];
+  [tracks.value, received.value, problem.value] = [[], [], ""];
   forget();
 }
 

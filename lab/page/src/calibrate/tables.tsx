@@ -141,7 +141,7 @@ export function Known({ assessed }: { assessed: AssessmentOutput }) {
     return `${figure(value * per, digits)} ± ${(deviation * per).toFixed(digits)}${name}`;
   };
   return (
-    <Table title="Nuisance parameters" id="known" head={["", "known", "found", "pull"]} notes={["pull: deviation of the runs alone from the known value, in standard deviations"]}>
+    <Table title="Nuisance parameters" id="known" head={["parameter", "known", "found", "pull"]} notes={["pull: deviation of the runs alone from the known value, in standard deviations"]}>
       {assessed.systematics.parameters.map(({ name, unit, known, stated, found, pull }) => (
         <tr key={name}>
           <th scope="row">{name}</th>

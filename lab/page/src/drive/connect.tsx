@@ -5,6 +5,7 @@ import { shown } from "../explore/document.ts";
 import { swimmer } from "../explore/model.ts";
 import { OpenButton } from "../files/open-button.tsx";
 import { connect, disconnect, leaveWheel, link, served, takeWheel, wheel } from "./robot.ts";
+import { SetUp } from "./setup.tsx";
 import { serial } from "./wires.ts";
 
 const BAUD = 115_200;
@@ -66,6 +67,7 @@ export function Connect() {
       </div>
       <KeyField />
       {refused.value && <p class="error" role="status">{refused.value}</p>}
+      <SetUp />
       <p class="soft">Tried with the robot in the page, with a serial port played by a test, and over the WebSocket; no real port and no Android phone was tried.</p>
     </section>
   );

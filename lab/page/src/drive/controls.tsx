@@ -1,6 +1,6 @@
 // Controls: upload, arm, play; forecast of the shown gait before it is sent.
 
-import { signal } from "@preact/signals";
+import { computed, signal } from "@preact/signals";
 import { activeGait, edit, shown } from "../explore/document.ts";
 import { gaitSource } from "../explore/model.ts";
 import { figure, length } from "../explore/names.ts";
@@ -11,6 +11,9 @@ const STANDARD_CYCLES = 3;
 const cycles = signal(STANDARD_CYCLES);
 /** Cycles of a play without end, which ends with the link or by a stop; only on request. */
 const endless = signal(false);
+const MOST_DRAWN = 50;
+/** Cycles whose predicted path is drawn. */
+export const cyclesToDraw = computed(() => (endless.value ? MOST_DRAWN : Math.min(MOST_DRAWN, cycles.value)));
 
 export function Controls() {
   if (link.value.state !== "open") return null;

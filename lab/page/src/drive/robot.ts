@@ -1,11 +1,13 @@
 // State of the robot in the page: signals updated by the worker's messages, and the requests to the robot.
 
-import { computed, effect, signal } from "@preact/signals";
+import { computed, effect, type Signal, signal } from "@preact/signals";
 import source from "worker:./worker.ts";
 import { download } from "../files/download.ts";
 import { startWorker } from "../wasm/embedded.ts";
 import { fragment, setFragment } from "../shell/fragment.ts";
-import type { Forecast, Health, Held, Hello, LinkState, News, Order, Request, Stands, TableInfo, Telemetry, WireOptions } from "./words.ts";
+import { compose, frameOf, MIDDLE, type Place, type Pose } from "./body.ts";
+import { addRecordings, endReplay, unreadable } from "./recordings.ts";
+import type { Forecast, Health, Held, Hello, LinkState, News, Order, Request, Stands, StateName, TableInfo, Telemetry, WireOptions } from "./words.ts";
 
 export const link = signal<{ state: LinkState; name: string; reason: string }>({ state: "closed", name: "", reason: "" });
 export const wheel = signal<{ yours: boolean; free: boolean } | null>(null);
@@ -39,8 +41,13 @@ export interface Sample {
 /** Number of samples in about two minutes. */
 const KEPT = 3000;
 export const history = signal<readonly Sample[]>([]);
-/** The robot's own prediction of its path in this play. */
-export const path = signal<readonly [number, number][]>([]);
+/** Pose in the tank at which the robot's own model began this play. */
+export const base = signal<Pose>(MIDDLE);
+/** Pose in the tank from which the next play is predicted, or the present one was. */
+export const start = signal<Pose>(MIDDLE);
+/** Path of this play by the robot's own model, and the true one of the robot in the page, in the tank. */
+export const path = signal<readonly Place[]>([]);
+export const truth = signal<readonly Place[]>([]);
 
 /** Age above which telemetry is grey, ms; the robot sends it 25 times per second. */
 const FRESH = 500;
@@ -114,6 +121,7 @@ function hear(news: News): void {
       break;
     case "stands":
       stands.value = news.stands;
+      if (MOVES.has(news.stands.state)) truth.value = [...truth.peek().slice(1 - KEPT), [news.stands.pose[0], news.stands.pose[1]]];
       break;
     case "wheel":
       wheel.value = news;
@@ -123,6 +131,10 @@ function hear(news: News): void {
       break;
     case "forecast":
       latestForecast.value = { of: news.of, result: news.forecast, reason: news.reason };
+      break;
+    case "recording":
+      if (news.reason) unreadable.value = `${news.name || "The log of this play"}: ${news.reason}`;
+      else addRecordings(news.plays, news.name, news.log);
       break;
     case "log":
       download("link.mcap", news.bytes, "application/octet-stream");
@@ -144,14 +156,43 @@ function take(latest: Telemetry): void {
   const again = before && latest.robot_us < before.robot_us;
   history.value = again ? [sample] : [...history.peek().slice(1 - KEPT), sample];
   const began = latest.state === "Starting" && before?.state !== "Starting";
-  const here: [number, number] = [latest.pose.x, latest.pose.y];
-  if (again || began) path.value = [here];
-  else if (latest.state === "Playing") path.value = [...path.peek().slice(1 - KEPT), here];
+  if (again || began) {
+    path.value = truth.value = [];
+    endReplay();
+  }
+  const truly = stands.peek()?.pose;
+  const cyclesBegin = latest.state === "Playing" && before?.state === "Starting";
+  const rests = !MOVES.has(latest.state);
+  // Poses are compared at rest, since true ones arrive at other times. The robot's own model begins anew at the first cycle, where the
+  // soft start has led by the model.
+  if (truly && rests) place(base, frameOf(truly, own(latest)));
+  else if (again) place(base, MIDDLE);
+  else if (cyclesBegin && before) place(base, compose(base.peek(), own(before)));
+  const here = compose(base.peek(), own(latest));
+  if (!rests) path.value = [...path.peek().slice(1 - KEPT), [here[0], here[1]]];
+  if (rests || cyclesBegin) place(start, truly ?? here);
+}
+
+const MOVES: ReadonlySet<StateName> = new Set(["Starting", "Playing", "Paused", "Stopping"]);
+const own = ({ pose: { x, y, theta } }: Telemetry): Pose => [x, y, theta];
+
+/** Sets a pose if it differs. */
+function place(signal: Signal<Pose>, pose: Pose): void {
+  if (pose.some((value, k) => Math.abs(value - (signal.peek()[k] ?? 0)) > 1e-6)) signal.value = pose;
+}
+
+/** The robot was put back into the middle of the tank, heading along it. */
+export function putBack(): void {
+  const latest = telemetry.peek();
+  path.value = [];
+  if (latest) place(base, frameOf(MIDDLE, own(latest)));
+  place(start, MIDDLE);
 }
 
 export function connect(wire: WireOptions, key: string | null): void {
   wireKind.value = wire.kind;
-  history.value = path.value = [];
+  history.value = path.value = truth.value = [];
+  base.value = start.value = MIDDLE;
   telemetry.value = null;
   order({ do: "open", wire, key });
 }
@@ -159,6 +200,7 @@ export function connect(wire: WireOptions, key: string | null): void {
 export const disconnect = () => order({ do: "close" });
 export const takeWheel = () => order({ do: "drive" });
 export const leaveWheel = () => order({ do: "watch" });
+export const openRecording = (name: string, bytes: ArrayBuffer) => order({ do: "read recording", name, bytes });
 export const downloadLog = () => order({ do: "log" });
 export const cancelUpload = () => order({ do: "cancel upload" });
 export const requestForecast = (question: object, of: number) => order({ do: "preflight", question, of });

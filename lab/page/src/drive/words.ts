@@ -76,6 +76,8 @@ export type Order =
   | { do: "watch" }
   | { do: "preflight"; question: object; of: number }
   | { do: "log" }
+  /** Reads the plays of a link log from disk. */
+  | { do: "read recording"; name: string; bytes: ArrayBuffer }
   /** The page's main thread is alive. */
   | { do: "alive" };
 
@@ -100,6 +102,24 @@ export interface Stands {
   cycles: number;
 }
 
+/** Telemetry of a recorded play; the pose is that of the robot's own model, from the start of the play. */
+export interface RecordedSample {
+  t_s: number;
+  phi_rad: [number, number];
+  pose: [number, number, number];
+}
+
+/** Play of a link log. */
+export interface RecordedPlay {
+  /** Seconds since 1970. */
+  began_s: number;
+  cycles: number;
+  ended: boolean;
+  /** Pose at the end of the last cycle. */
+  end: [number, number, number];
+  samples: RecordedSample[];
+}
+
 export interface Forecast {
   /** Checksum of the table that an upload of this gait sends. */
   crc32: number;
@@ -108,6 +128,8 @@ export interface Forecast {
   displacement_m: [number, number] | null;
   rotation_rad: number | null;
   loss_share: number | null;
+  /** One cycle as played: x, y, θ from its start, and both joint angles. */
+  path: [number, number, number, number, number][];
   refused: string | null;
   warnings: string[];
   servo_assumed: boolean;
@@ -132,4 +154,6 @@ export type News =
   | { kind: "forecast"; of: number; forecast: Forecast | null; reason: string }
   /** The worker checks that the main thread is alive. */
   | { kind: "alive?" }
-  | { kind: "log"; bytes: ArrayBuffer };
+  | { kind: "log"; bytes: ArrayBuffer }
+  /** Plays of a log: of an opened file with its name, or the play that has just ended, with its log. */
+  | { kind: "recording"; name: string; plays: RecordedPlay[]; log: ArrayBuffer | null; reason: string };

@@ -3,7 +3,7 @@
 
 import { Module } from "../wasm/module.ts";
 import { type WireListener, open, stepOf, type Wire } from "./wires.ts";
-import type { Event, Forecast, Health, News, Order, Reply, Request, Status } from "./words.ts";
+import type { Event, Forecast, Health, News, Order, RecordedPlay, Reply, Request, StateName, Status } from "./words.ts";
 
 /** Longest interval between two steps of the session, ms. */
 const BEAT = 20;
@@ -95,6 +95,7 @@ function openSession(bytesPerSecond: number): void {
 
 function closeSession(): void {
   clearTimeout(timer);
+  endRecording();
   if (session !== undefined) json("session close", { number: session });
   if (spectator !== undefined) json("overhear close", { number: spectator });
   session = spectator = hello = undefined;
@@ -143,6 +144,7 @@ function hear(event: Event): void {
     // An e-stop is cleared by its count.
     if (event.telemetry.state === "EStopped" && state !== "EStopped") request("Status", STATUS);
     state = event.telemetry.state;
+    record(event.telemetry.state, event.at_s);
     return;
   }
   if (event.event === "progress") {
@@ -179,6 +181,36 @@ function hear(event: Event): void {
 /** State of the robot by its last telemetry. */
 let state = "";
 let hello: (Event & { event: "connected" })["hello"] | undefined;
+
+const MOVES: ReadonlySet<StateName> = new Set(["Starting", "Playing", "Paused", "Stopping"]);
+/** Time of the last request to play, and the time from which the log of the present play is kept, s. */
+let playRequested: number | undefined;
+let recordedFrom: number | undefined;
+
+/** Begins a recording when the robot begins to move, and ends it when the robot rests. */
+function record(state: StateName, at: number): void {
+  if (!MOVES.has(state)) endRecording();
+  else recordedFrom ??= playRequested ?? at;
+}
+
+function endRecording(): void {
+  if (recordedFrom === undefined || session === undefined) return;
+  const answer = module.call("session log", { number: session, from_s: recordedFrom });
+  recordedFrom = playRequested = undefined;
+  if ("bytes" in answer) readRecording("", answer.bytes);
+}
+
+/** Reads the plays of a log; without a name the log is that of the present session. */
+function readRecording(name: string, bytes: Uint8Array<ArrayBuffer>): void {
+  try {
+    const answer = module.call("recordings", bytes);
+    const plays = "json" in answer ? (answer.json as RecordedPlay[]) : [];
+    const log = name ? null : bytes.buffer;
+    tell({ kind: "recording", name, plays, log, reason: "" }, log ? [log] : []);
+  } catch (error) {
+    tell({ kind: "recording", name, plays: [], log: null, reason: reasonOf(error) });
+  }
+}
 
 function answered(reply: Reply): void {
   if (typeof reply !== "object") return;
@@ -233,6 +265,7 @@ function perform(order: Order): void {
       wire?.say(order.do);
       return;
     case "request":
+      if (typeof order.request === "object" && "Play" in order.request) playRequested = now();
       request(order.request, order.what);
       return;
     case "upload":
@@ -249,12 +282,15 @@ function perform(order: Order): void {
         tell({ kind: "forecast", of: order.of, forecast: null, reason: reasonOf(error) });
       }
       return;
+    case "read recording":
+      readRecording(order.name, new Uint8Array(order.bytes));
+      return;
     case "alive":
       alive = performance.now();
       return;
     case "log": {
       if (session === undefined) return;
-      const answer = module.call("session log", { number: session });
+      const answer = module.call("session log", { number: session, from_s: null });
       if ("bytes" in answer) tell({ kind: "log", bytes: answer.bytes.buffer }, [answer.bytes.buffer]);
     }
   }

@@ -1,15 +1,19 @@
-// Diverging colour scale of heights: blue below zero, orange above, paper colour between; suitable for all kinds of colour vision.
+// Diverging colour scale of heights: blue below zero, red above, paper colour between; suitable for all kinds of colour vision.
 
-const LIGHT = { below: [27, 92, 161], none: [250, 250, 249], above: [186, 84, 8] } as const;
-const DARK = { below: [92, 167, 236], none: [24, 30, 35], above: [238, 148, 72] } as const;
+import palette from "../style/palette.json";
 
 /** Red, green, blue of a value in −1 … 1. */
 export function diverging(value: number, dark: boolean): [number, number, number] {
-  const scale = dark ? DARK : LIGHT;
-  const share = Math.min(1, Math.abs(value)) ** 0.75;
-  const end = value < 0 ? scale.below : scale.above;
-  const mix = (k: 0 | 1 | 2) => Math.round(scale.none[k] + (end[k] - scale.none[k]) * share * 0.9);
-  return [mix(0), mix(1), mix(2)];
+  return between(dark ? palette.diverging_dark : palette.diverging, (1 + value) / 2);
+}
+
+/** Colour at a share of a palette's range, between its stops. */
+export function between(stops: readonly number[][], share: number): [number, number, number] {
+  const place = Math.max(0, Math.min(1, share)) * (stops.length - 1);
+  const below = Math.min(stops.length - 2, Math.floor(place));
+  const [low, high] = [stops[below] ?? [], stops[below + 1] ?? []];
+  const mixed = (k: number) => Math.round((low[k] ?? 0) + ((high[k] ?? 0) - (low[k] ?? 0)) * (place - below));
+  return [mixed(0), mixed(1), mixed(2)];
 }
 
 /** Height of the full colour: the 98th percentile of the absolute heights. */

@@ -6,6 +6,8 @@ import { curveOf, forgetStopped, isCurrent, optima, searching, STOPPED, stopSear
 import { angle, figure, NAMES } from "./names.ts";
 import type { OptimizeOutput } from "./outputs.ts";
 import { symmetrised } from "./spline.ts";
+import { path } from "./map.tsx";
+import shapes from "./thumbnails.json";
 
 /** Largest number of control points of a dragged gait. */
 const MOST = 32;
@@ -103,7 +105,7 @@ function OptimumRow({ what }: { what: Optimum }) {
         <th scope="row">
           <label>
             <input type="checkbox" checked={laid} onChange={toggle} />
-            <span class={`key of-${OPTIMA.indexOf(what)}`} aria-hidden="true" />
+            <Thumbnail what={what} />
             {NAMES[what]}
           </label>
         </th>
@@ -116,6 +118,19 @@ function OptimumRow({ what }: { what: Optimum }) {
       </tr>
       {reason && <tr><td class="error reason" colSpan={3}>{reason}</td></tr>}
     </>
+  );
+}
+
+/** Gait of an objective in the plane of the joint angles: the one that was found, or before that the robot's within 2.3 rad. */
+function Thumbnail({ what }: { what: Optimum }) {
+  const found = curveOf({ kind: "optimum", what });
+  const points = found.length > 0 ? found.filter((_, k) => k % Math.ceil(found.length / 60) === 0) : shapes[what].map(([x, y]) => [x ?? 0, y ?? 0] as const);
+  const reach = 1.12 * Math.max(...points.flatMap(([x, y]) => [Math.abs(x), Math.abs(y)]));
+  return (
+    <svg class="thumbnail" viewBox={`${-reach} ${-reach} ${2 * reach} ${2 * reach}`} aria-hidden="true">
+      <path class="cross" d={`M${-reach} 0H${reach}M0 ${-reach}V${reach}`} />
+      <path class={`overlaid of-${OPTIMA.indexOf(what)}`} d={path(points, true)} />
+    </svg>
   );
 }
 

@@ -1,8 +1,8 @@
 // Reader of the export of `swimmer sweep map --export FILE.json`, with a message for each error.
 
-export interface Quantity {
-  name: string;
-  unit: string;
+import type { Named } from "./words.ts";
+
+export interface Quantity extends Named {
   /** Rows along the second axis, columns along the first; null for designs without a gait. */
   values: (number | null)[][];
 }
@@ -15,12 +15,21 @@ export interface SweepMap {
   structure: (string | null)[][];
   status: string[][];
   folds: [number, number][][];
-  pareto: { key: number; speed: number; efficiency: number }[];
+  pareto: FrontPoint[];
+  /** Axes of the whole plan; empty in an export of an older version. */
+  plan_axes: Named[];
 }
 
-export interface Axis {
-  name: string;
-  unit: string;
+/** Design of the Pareto front. */
+export interface FrontPoint {
+  key: number;
+  speed: number;
+  efficiency: number;
+  /** Values of the plan's axes; missing in an export of an older version. */
+  design?: number[];
+}
+
+export interface Axis extends Named {
   values: number[];
 }
 
@@ -57,5 +66,6 @@ export function readMap(text: string): SweepMap {
     status: from.status ?? [],
     folds: from.folds ?? [],
     pareto: from.pareto ?? [],
+    plan_axes: from.plan_axes ?? [],
   };
 }

@@ -1,17 +1,10 @@
-// Sequential colour scale with uniformly decreasing lightness, suitable for all kinds of colour vision.
+// Sequential colour scale of a map, and the range of its values.
 
-import { dark } from "../shell/theme.tsx";
-
-const STOPS = [[253, 246, 227], [244, 190, 120], [222, 120, 62], [160, 58, 90], [74, 24, 110]] as const;
+import { between } from "../explore/colours.ts";
+import palette from "../style/palette.json";
 
 /** Colour of a fraction in 0 … 1. */
-export function rampColour(share: number): string {
-  const clamped = Math.max(0, Math.min(1, dark.value ? 1 - share : share)) * (STOPS.length - 1);
-  const k = Math.min(STOPS.length - 2, Math.floor(clamped));
-  const [a, b] = [STOPS[k] ?? STOPS[0], STOPS[k + 1] ?? STOPS[0]];
-  const mixed = [0, 1, 2].map((c) => Math.round((a[c] ?? 0) + ((b[c] ?? 0) - (a[c] ?? 0)) * (clamped - k)));
-  return `rgb(${mixed.join(" ")})`;
-}
+export const rampColour = (share: number) => `rgb(${between(palette.sequential, share).join(" ")})`;
 
 /** Least and largest of the existing values. */
 export function range(values: readonly (readonly (number | null)[])[]): [number, number] {

@@ -33,6 +33,8 @@ struct Host {
     log: Vec<LinkFrame>,
     /// Number of dropped frames.
     forgotten: usize,
+    /// Start of the page's clock, since 1970.
+    epoch: Duration,
 }
 
 #[derive(Deserialize)]
@@ -78,6 +80,7 @@ pub(super) fn open(lab: &mut Lab, bytes: &[u8]) -> Outcome {
         passed,
         log: Vec::new(),
         forgotten: 0,
+        epoch,
     };
     json(&Opened {
         number: lab.kept.keep(host),
@@ -219,11 +222,23 @@ pub(super) fn link(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     }))
 }
 
+#[derive(Deserialize)]
+struct LogRequest {
+    number: u32,
+    /// Time of the first frame on the page's clock; `None` for the whole log.
+    from_s: Option<f64>,
+}
+
 /// Logged frames as MCAP, as `swimmer robot log` writes them.
 pub(super) fn log(lab: &mut Lab, bytes: &[u8]) -> Outcome {
-    let Numbered { number } = parsed(bytes)?;
+    let LogRequest { number, from_s } = parsed(bytes)?;
     let host: &mut Host = lab.kept.get(number)?;
-    link_log_bytes(&host.log)
+    let from = host.epoch + seconds_of(from_s.unwrap_or_default())?;
+    let from_ns = u64::try_from(from.as_nanos()).unwrap_or(u64::MAX);
+    let begin = host
+        .log
+        .partition_point(|frame| frame.host_time_ns < from_ns);
+    link_log_bytes(host.log.get(begin..).unwrap_or_default())
         .map(CallOutput::Bytes)
         .map_err(|why| why.to_string())
 }

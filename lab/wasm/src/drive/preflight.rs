@@ -5,6 +5,7 @@ use link_protocol::{Configuration, HelloReply, MAX_KNOTS, crc32c};
 use operations::{Files, GaitSource};
 use serde::Deserialize;
 use serde_json::{Value, json};
+use swimmer_model::{Tolerance, trajectory};
 use twin::is_configured_as;
 
 use crate::calls::{Lab, Outcome, json, parsed};
@@ -26,6 +27,14 @@ struct ForecastRequest {
 struct Connected {
     hello: HelloReply,
     configuration: Configuration,
+}
+
+/// Steps of the path of one cycle: the page draws it.
+const PATH_INTERVALS: usize = 120;
+
+/// Rounds to a millionth of a metre or radian.
+fn to_micro(value: f64) -> f64 {
+    (value * 1e6).round() / 1e6
 }
 
 /// Computes the forecast of a gait.
@@ -51,6 +60,17 @@ pub(super) fn preflight(_lab: &mut Lab, bytes: &[u8]) -> Outcome {
         .map(|table| crc32c(table.bytes()))
         .map_err(|why| why.to_string())?;
     let played = predicted.ends().map(|(_, played)| *played);
+    let mut path: Vec<[f64; 5]> = Vec::with_capacity(PATH_INTERVALS + 1);
+    trajectory(
+        &model,
+        &predicted.way,
+        &Tolerance::default(),
+        PATH_INTERVALS,
+        |point| {
+            let (pose, phi) = (point.pose, point.phi);
+            path.push([pose.x, pose.y, pose.theta, phi.x, phi.y].map(to_micro));
+        },
+    );
     let losses: Vec<Value> = predicted
         .stages
         .iter()
@@ -65,6 +85,8 @@ pub(super) fn preflight(_lab: &mut Lab, bytes: &[u8]) -> Outcome {
         "rotation_rad": played.map(|played| played.rotation),
         "loss_share": predicted.share(predicted.total_loss()),
         "losses": losses,
+        // Path of one cycle as played: x, y, θ of the middle link from the cycle's start, and both joint angles.
+        "path": path,
         "refused": predicted.refusal(),
         "warnings": predicted.warnings(),
         // `true` if the values of a good servo are assumed.
