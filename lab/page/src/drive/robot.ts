@@ -173,7 +173,7 @@ function take(latest: Telemetry): void {
   if (rests || cyclesBegin) place(start, truly ?? here);
 }
 
-const MOVES: ReadonlySet<StateName> = new Set(["Starting", "Playing", "Paused", "Stopping"]);
+const MOVES: ReadonlySet<StateName> = new Set(["Starting", "Playing", "Paused", "Stopping", "Settling"]);
 const own = ({ pose: { x, y, theta } }: Telemetry): Pose => [x, y, theta];
 
 /** Sets a pose if it differs. */
