@@ -26,6 +26,16 @@ use self::timing::{GaitTiming, TimedGait};
 use crate::context::Timed;
 use crate::{Context, Error, robot_limits};
 
+/// `true` with the searches that the lab page leaves out. A constant, so that the linker drops what they call.
+const ALL_SEARCHES: bool = cfg!(feature = "all-searches");
+
+/// Refusal of a search that the lab page leaves out.
+fn left_out(search: &str) -> Error {
+    Error::refused(format!(
+        "{search} is no part of the lab page: use the command `swimmer optimize`"
+    ))
+}
+
 /// Search for the best gait of an objective.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(try_from = "Value")]

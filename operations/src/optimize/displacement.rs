@@ -8,7 +8,7 @@ use swimmer_files::Objective;
 
 use super::closed::{ClosedCurve, Found};
 use super::timing::{self, TimedGait};
-use super::{GaitOutput, Quarter, robust, searched, split, warn_if_beyond};
+use super::{ALL_SEARCHES, GaitOutput, Quarter, left_out, robust, searched, split, warn_if_beyond};
 use crate::bounds::BoundsRequest;
 use crate::context::Stage;
 use crate::{Context, Error, SwimmerSource};
@@ -125,6 +125,9 @@ pub fn run(request: &Request, context: &mut Context) -> Result<Output, Error> {
         ..DisplacementProblem::new(file.swimmer)
     };
     if let Some(robust) = &request.robust {
+        if !ALL_SEARCHES {
+            return Err(left_out("the design for an uncertain swimmer"));
+        }
         let uncertainty = robust.uncertainty(&file, context)?;
         let over = robust.over.into();
         let found = context.timed(Stage::Search, |_| {
@@ -135,6 +138,9 @@ pub fn run(request: &Request, context: &mut Context) -> Result<Output, Error> {
         return Ok(Output::Robust(output));
     }
     if !file.swimmer.is_symmetric() {
+        if !ALL_SEARCHES {
+            return Err(left_out("the search for gaits of side links that differ"));
+        }
         if request.sign.is_some() {
             return Err(Error::refused(
                 "--sign is that of gaits with the paper's symmetries, and the side links of this swimmer differ: leave it out",

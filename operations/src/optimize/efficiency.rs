@@ -8,7 +8,10 @@ use swimmer_files::{Bounds, Objective, SwimmerFile};
 
 use super::closed::{ClosedCurve, Found};
 use super::timing::{self, TimedGait};
-use super::{EfficiencyFigures, GaitOutput, Quarter, robust, searched, split, warn_if_beyond};
+use super::{
+    ALL_SEARCHES, EfficiencyFigures, GaitOutput, Quarter, left_out, robust, searched, split,
+    warn_if_beyond,
+};
 use crate::bounds::BoundsRequest;
 use crate::context::Stage;
 use crate::{Context, Error, SwimmerSource};
@@ -157,6 +160,9 @@ pub fn run(request: &Request, context: &mut Context) -> Result<Output, Error> {
         ..EfficiencyProblem::new(file.swimmer, branch)
     };
     if let Some(robust) = &request.robust {
+        if !ALL_SEARCHES {
+            return Err(left_out("the design for an uncertain swimmer"));
+        }
         let uncertainty = robust.uncertainty(&file, context)?;
         let over = robust.over.into();
         let order = (branch, request.order.unwrap_or(ROBUST_ORDER));
@@ -173,6 +179,9 @@ pub fn run(request: &Request, context: &mut Context) -> Result<Output, Error> {
         ));
     }
     if !file.swimmer.is_symmetric() {
+        if !ALL_SEARCHES {
+            return Err(left_out("the search for gaits of side links that differ"));
+        }
         return without_symmetry(request, &file, problem.bounds, context).map(Output::Closed);
     }
     let search = |bounds| {
@@ -206,7 +215,7 @@ fn solve(method: Method, problem: &EfficiencyProblem) -> Result<OptimalGait, Err
     }
 }
 
-#[cfg(feature = "collocation")]
+#[cfg(feature = "all-searches")]
 fn by_collocation(problem: &EfficiencyProblem) -> Result<OptimalGait, Error> {
     use collocation::CollocationError;
 
@@ -216,11 +225,9 @@ fn by_collocation(problem: &EfficiencyProblem) -> Result<OptimalGait, Error> {
     })
 }
 
-#[cfg(not(feature = "collocation"))]
+#[cfg(not(feature = "all-searches"))]
 fn by_collocation(_: &EfficiencyProblem) -> Result<OptimalGait, Error> {
-    Err(Error::refused(
-        "the method `collocation` is not part of this program: choose auto, fourier or shooting",
-    ))
+    Err(left_out("the method `collocation`"))
 }
 
 /// Best gait of the closed-curve search, for side links that differ.

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use swimmer_files::{AnyGait, ServoFile, SwimmerFile};
 
 use super::robust::{self, RobustnessOutput};
-use super::{GaitOutput, split};
+use super::{ALL_SEARCHES, GaitOutput, left_out, split};
 use crate::bounds::BoundsRequest;
 use crate::context::Stage;
 use crate::robot_limits::{self, PlayedSpeed, servo_rates};
@@ -162,14 +162,19 @@ pub fn run(request: &Request, context: &mut Context) -> Result<Output, Error> {
         Some(robust) => Some((robust.uncertainty(&file, context)?, robust.over.into())),
         None => None,
     };
+    if !ALL_SEARCHES && (uncertainty.is_some() || request.front) {
+        return Err(left_out(
+            "the design for an uncertain swimmer, and the front of farthest gaits,",
+        ));
+    }
     let (mut farthest, mut robustness) = (None, None);
     let found = context.timed(Stage::FastestGait, |watch| -> Result<Fastest, Error> {
-        if let Some((uncertainty, over)) = &uncertainty {
+        if let Some((uncertainty, over)) = uncertainty.as_ref().filter(|_| ALL_SEARCHES) {
             let found = robust_speed(&problem, uncertainty, *over, watch)
                 .map_err(|error| robust::refused(error, &request.bounds))?;
             robustness = Some(found.robustness);
             Ok(found.fastest)
-        } else if request.front {
+        } else if ALL_SEARCHES && request.front {
             let front = farthest.insert(front(&problem, watch)?);
             Ok(front.fastest.clone())
         } else {

@@ -50,6 +50,9 @@ impl TimedGait {
         let Some(Request { max_rate, period }) = request else {
             return Ok(None);
         };
+        if !super::ALL_SEARCHES {
+            return Err(super::left_out("the timing under a rate"));
+        }
         let model = Model::new(&gait.swimmer).map_err(|error| Error::failed(&error))?;
         let (timing, file) = timing_of_table(&model, &gait.gait_file(name), period, max_rate)?;
         let timed = AnyGait::from_file(&file).map_err(|error| Error::failed(&error))?;
