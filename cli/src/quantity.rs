@@ -42,6 +42,22 @@ pub(crate) fn crossing_or_folding(share: &CrossingShare<f64>) -> String {
     }
 }
 
+/// A number with so many significant digits, without trailing zeros.
+pub(crate) fn significant(value: f64, digits: i32) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    #[allow(clippy::cast_possible_truncation)] // At most 308.
+    let decimals = digits - 1 - value.abs().log10().floor() as i32;
+    let unit = 10_f64.powi(decimals.abs());
+    let rounded = if decimals < 0 {
+        (value / unit).round() * unit
+    } else {
+        (value * unit).round() / unit
+    };
+    format!("{rounded}")
+}
+
 /// Relative deviation of `value` from `reference`, signed. Returns `None` if the reference is zero.
 pub(crate) fn relative(value: f64, reference: f64) -> Option<f64> {
     (reference != 0.0).then(|| value / reference - 1.0)
@@ -140,6 +156,19 @@ impl fmt::Display for Table {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn significant_digits_have_no_tail() {
+        for (value, digits, text) in [
+            (1.140_000_000_000_000_1, 3, "1.14"),
+            (-0.031_251, 3, "-0.0313"),
+            (123_456.0, 3, "123000"),
+            (2.0, 5, "2"),
+            (0.0, 3, "0"),
+        ] {
+            assert_eq!(significant(value, digits), text);
+        }
+    }
 
     #[test]
     fn intervals_are_told_apart() {

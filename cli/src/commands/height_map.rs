@@ -79,9 +79,9 @@ impl Component {
     /// Height with its unit.
     fn quantity(self) -> &'static str {
         match self {
-            Self::X => "H_x/L [rad⁻²]",
-            Self::Y => "H_y/L [rad⁻²]",
-            Self::Theta => "H_θ [rad⁻¹]",
+            Self::X => "height H_x/L [rad⁻²]",
+            Self::Y => "height H_y/L [rad⁻²]",
+            Self::Theta => "height H_θ [rad⁻¹]",
         }
     }
 }

@@ -145,6 +145,7 @@ impl Figure {
                 | Series::Arrows { .. }
                 | Series::Word { .. }
                 | Series::Cells(_)
+                | Series::ColourBar(_)
                 | Series::Names(_) => &[],
             };
             points.iter().map(move |point| (name, point))

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use plotters::prelude::*;
 
+use super::colour_bar::{self, ColourBar};
 use super::placing::Obstacles;
 use super::style::{
     AXIS, Area, LEGEND_LINE, NAMES, NUMBERS, SCALE, TITLE, WORDS, arrows, finished, head, legend,
@@ -61,6 +62,8 @@ pub(crate) enum Series {
     Cells(Vec<([f64; 4], RGBColor)>),
     /// Heads of arrows along a closed curve, the way its points run; on equal axes.
     Arrows { points: Vec<Point>, color: RGBColor },
+    /// Colour bar of the field whose cells are drawn, to the right of the axes.
+    ColourBar(ColourBar),
     /// Names under 1, 2, 3 … of the horizontal axis instead of numbers.
     Names(Vec<String>),
     /// A short label next to a point.
@@ -138,16 +141,24 @@ impl Chart {
             .map(|(name, color)| (name.as_str(), *color));
         legend(whole, (64, self.size.1), named)?;
         let (area, _) = whole.split_vertically(self.size.1 * SCALE);
+        let bar = self.colour_bar();
+        let width = self.size.0 - bar.map_or(0, |_| colour_bar::WIDTH);
+        let (area, beside) = area.split_horizontally(width * SCALE);
         let label_height = 42 * SCALE;
         let (top, right) = (self.top() * SCALE, 24 * SCALE);
         let inside = |label_width: i32| {
             (
-                self.size.0 * SCALE - label_width - right,
+                width * SCALE - label_width - right,
                 self.size.1 * SCALE - label_height - top,
             )
         };
         let label_width = Self::label_width(&self.ranges(inside(64 * SCALE)).1) * SCALE;
-        area.draw_text(&self.title, &letters(TITLE, INK), (label_width, 10 * SCALE))
+        if let Some(bar) = bar {
+            let (beside, _) = beside.split_vertically(self.size.1 * SCALE - label_height);
+            bar.draw(&beside, self.top())?;
+        }
+        whole
+            .draw_text(&self.title, &letters(TITLE, INK), (label_width, 10 * SCALE))
             .map_err(|error| said(&error))?;
         let (x_range, y_range) = self.ranges(inside(label_width));
         let x_label = label_format(&x_range, 7);
@@ -252,13 +263,13 @@ impl Chart {
                     });
                     chart.draw_series(cells).map_err(|error| said(&error))?;
                 }
-                Series::Names(_) => {}
+                Series::Names(_) | Series::ColourBar(_) => {}
                 Series::Word { at, text, color } => {
                     let style = letters(WORDS, *color);
                     let count = i32::try_from(text.chars().count()).unwrap_or(0);
                     let size = (count * WORDS * SCALE * 3 / 5, WORDS * SCALE);
                     let usual = (6 * SCALE, -8 * SCALE);
-                    let within = (self.size.0 * SCALE, self.size.1 * SCALE);
+                    let within = (width * SCALE, self.size.1 * SCALE);
                     let placed = places.word(chart.backend_coord(at), size, usual, within);
                     let (x, y) = placed.offset;
                     if placed.is_far {
@@ -283,6 +294,13 @@ impl Chart {
     /// Above the plane of the axes, pixels of the page.
     fn top(&self) -> i32 {
         if self.title.is_empty() { 10 } else { 44 }
+    }
+
+    fn colour_bar(&self) -> Option<&ColourBar> {
+        self.series.iter().find_map(|series| match series {
+            Series::ColourBar(bar) => Some(bar),
+            _ => None,
+        })
     }
 
     /// Labels at 1, 2, 3 …, if the horizontal axis is not a scale.
@@ -337,7 +355,7 @@ impl Series {
                 .flat_map(|([left, low, right, high], _)| [(*left, *low), (*right, *high)])
                 .collect(),
             Self::Word { at, .. } => vec![*at],
-            Self::Names(_) | Self::Arrows { .. } => Vec::new(),
+            Self::Names(_) | Self::Arrows { .. } | Self::ColourBar(_) => Vec::new(),
         }
     }
 }
@@ -365,7 +383,7 @@ fn widened(range: &Range<f64>, length: f64) -> Range<f64> {
 }
 
 /// Fewest decimals that distinguish neighbouring ticks.
-fn label_format(range: &Range<f64>, ticks: u8) -> impl Fn(&f64) -> String {
+pub(crate) fn label_format(range: &Range<f64>, ticks: u8) -> impl Fn(&f64) -> String {
     let step = (range.end - range.start) / f64::from(ticks);
     let decimals = if step > 0.0 {
         (-step.log10()).ceil().clamp(0.0, 6.0)

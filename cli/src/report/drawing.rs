@@ -71,6 +71,22 @@ impl Drawing {
         ));
     }
 
+    /// A filled arrow head of this length in the middle of a curve that runs along a unit vector.
+    pub(crate) fn arrow_head(&mut self, at: Point, along: Point, length: f64, ink: Ink) {
+        let corner = |forwards: f64, across: f64| {
+            (
+                at.0 + length * (forwards * along.0 - across * along.1),
+                at.1 + length * (forwards * along.1 + across * along.0),
+            )
+        };
+        let corners = [corner(0.5, 0.0), corner(-0.5, 0.42), corner(-0.5, -0.42)];
+        self.put(format_args!(
+            "<polygon {} points=\"{}\"/>",
+            filled(ink),
+            places(&corners)
+        ));
+    }
+
     /// A circle.
     pub(crate) fn ring(&mut self, at: Point, radius: f64, width: f64, (color, opacity): Ink) {
         self.put(format_args!(

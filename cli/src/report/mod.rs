@@ -2,11 +2,13 @@
 
 pub(crate) mod calibration;
 pub(crate) mod chart;
+pub(crate) mod colour_bar;
 pub(crate) mod drawing;
 pub(crate) mod experiment;
 mod figures;
 pub(crate) mod markup;
 mod page;
+pub(crate) mod palette;
 mod placing;
 pub(crate) mod style;
 pub(crate) mod swimming;

@@ -8,6 +8,8 @@ use plotters::prelude::*;
 use swimmer_model::Gait as _;
 
 use crate::failure::{Failure, Outcome};
+use crate::report::colour_bar::{self, ColourBar};
+use crate::report::palette::Palette;
 use crate::report::style::{
     AXIS, Area, CURVES, INK, LEGEND_LINE, NAMES, NUMBERS, Point, SCALE, TITLE, ZERO_CURVE, arrows,
     finished, head, legend, letters, number, said, stroke,
@@ -32,31 +34,12 @@ const LEFT: i32 = 76;
 const MARGIN: i32 = 12;
 const BOTTOM: i32 = 50;
 const TOP: i32 = 44;
-/// From the map to the colour bar, the bar, and its labels.
-const GAP: i32 = 22;
-const BAR: i32 = 20;
-const RIGHT: i32 = 84;
 /// Nodes in each direction between which the edges of the colours are interpolated.
 const NODES: usize = 131;
 /// Steps of colour on either side of zero.
 const SHADES: i32 = 24;
 /// Points a gait is drawn with.
 const GAIT_POINTS: u32 = 1500;
-
-/// The `RdBu` map of `ColorBrewer`, blue to red: white is zero, and it reads in grey and to the colour-blind.
-const COLORS: [[f64; 3]; 11] = [
-    [5.0, 48.0, 97.0],
-    [33.0, 102.0, 172.0],
-    [67.0, 147.0, 195.0],
-    [146.0, 197.0, 222.0],
-    [209.0, 229.0, 240.0],
-    [247.0, 247.0, 247.0],
-    [253.0, 219.0, 199.0],
-    [244.0, 165.0, 130.0],
-    [214.0, 96.0, 77.0],
-    [178.0, 24.0, 43.0],
-    [103.0, 0.0, 31.0],
-];
 
 /// The figure as SVG.
 ///
@@ -65,7 +48,7 @@ const COLORS: [[f64; 3]; 11] = [
 pub(crate) fn svg(figure: &Figure<'_>) -> Outcome<String> {
     let legend = i32::try_from(figure.gaits.len()).unwrap_or(i32::MAX / 1000) * LEGEND_LINE;
     let legend = if legend > 0 { legend + 10 } else { 0 };
-    let size = (LEFT + MAP + GAP + BAR + RIGHT, TOP + MAP + BOTTOM + legend);
+    let size = (LEFT + MAP + colour_bar::WIDTH, TOP + MAP + BOTTOM + legend);
     let mut text = String::new();
     {
         let pixels = (
@@ -149,8 +132,8 @@ fn draw(figure: &Figure<'_>, area: &Area<'_>) -> Result<(), String> {
         .set_all_tick_mark_size(5 * SCALE)
         .label_style(letters(NUMBERS, INK))
         .axis_desc_style(letters(NAMES, INK))
-        .x_desc("φ₁ [rad]")
-        .y_desc("φ₂ [rad]")
+        .x_desc("front joint φ₁ [rad]")
+        .y_desc("back joint φ₂ [rad]")
         .draw()
         .map_err(|error| said(&error))?;
     chart
@@ -160,7 +143,13 @@ fn draw(figure: &Figure<'_>, area: &Area<'_>) -> Result<(), String> {
         )))
         .map_err(|error| said(&error))?;
     let (bar_area, _) = bar_area.split_vertically((TOP + MAP) * SCALE);
-    bar(figure, &bar_area, largest)?;
+    let bar = ColourBar {
+        name: figure.quantity.to_owned(),
+        low: -largest,
+        high: largest,
+        palette: Palette::Diverging,
+    };
+    bar.draw(&bar_area, TOP)?;
     let named = figure.gaits.iter().map(|named| named.name.as_str());
     let named = named.zip(CURVES.iter().copied().cycle());
     legend(area, (LEFT, TOP + MAP + BOTTOM), named)
@@ -231,96 +220,10 @@ fn area(corners: &[Point]) -> f64 {
     0.5 * twice.abs()
 }
 
-/// The colour bar, with the exponent of its numbers on top.
-fn bar(figure: &Figure<'_>, area: &Area<'_>, largest: f64) -> Result<(), String> {
-    let exponent = largest.log10().floor();
-    let unit = 10_f64.powf(exponent);
-    let top = largest / unit;
-    let mut chart = ChartBuilder::on(area)
-        .margin_top(TOP * SCALE)
-        .margin_left(GAP * SCALE)
-        .right_y_label_area_size(RIGHT * SCALE)
-        .build_cartesian_2d(0.0..1.0, -top..top)
-        .map_err(|error| said(&error))?;
-    for step in -SHADES..=SHADES {
-        let middle = f64::from(step) / f64::from(SHADES) * top;
-        let half = 0.5 / f64::from(SHADES) * top;
-        let corners = [
-            (0.0, (middle - half).max(-top)),
-            (1.0, (middle + 1.6 * half).min(top)),
-        ];
-        chart
-            .draw_series(std::iter::once(Rectangle::new(
-                corners,
-                color(step).filled(),
-            )))
-            .map_err(|error| said(&error))?;
-    }
-    let quantity = if exponent == 0.0 {
-        figure.quantity.to_owned()
-    } else {
-        format!("10{} × {}", superscript(exponent), figure.quantity)
-    };
-    chart
-        .configure_mesh()
-        .disable_mesh()
-        .disable_x_axis()
-        .y_labels(9)
-        .y_label_formatter(&|value| number(*value, 1))
-        .axis_style(stroke(AXIS, 1.0))
-        .set_all_tick_mark_size(5 * SCALE)
-        .label_style(letters(NUMBERS, INK))
-        .axis_desc_style(letters(NAMES, INK))
-        .y_desc(quantity)
-        .draw()
-        .map_err(|error| said(&error))?;
-    chart
-        .draw_series(std::iter::once(Rectangle::new(
-            [(0.0, -top), (1.0, top)],
-            stroke(AXIS, 1.0),
-        )))
-        .map_err(|error| said(&error))?;
-    Ok(())
-}
-
 /// The colour of a step between −`SHADES` and `SHADES`.
 fn color(shade: i32) -> RGBColor {
-    let place = 5.0 * (1.0 + f64::from(shade) / f64::from(SHADES));
-    let below = place.floor().clamp(0.0, 9.0);
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 0 to 9.
-    let index = below as usize;
-    let (Some(low), Some(high)) = (COLORS.get(index), COLORS.get(index + 1)) else {
-        return INK;
-    };
-    let mixed = |k: usize| {
-        let part = |color: &[f64; 3]| color.get(k).copied().unwrap_or(0.0);
-        let value = part(low) + (part(high) - part(low)) * (place - below);
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 0 to 255.
-        {
-            value.round().clamp(0.0, 255.0) as u8
-        }
-    };
-    RGBColor(mixed(0), mixed(1), mixed(2))
-}
-
-/// A whole number as an exponent.
-fn superscript(exponent: f64) -> String {
-    format!("{exponent:.0}")
-        .chars()
-        .map(|digit| match digit {
-            '-' => '⁻',
-            '0' => '⁰',
-            '1' => '¹',
-            '2' => '²',
-            '3' => '³',
-            '4' => '⁴',
-            '5' => '⁵',
-            '6' => '⁶',
-            '7' => '⁷',
-            '8' => '⁸',
-            _ => '⁹',
-        })
-        .collect()
+    let share = 0.5 * (1.0 + f64::from(shade) / f64::from(SHADES));
+    Palette::Diverging.color(share)
 }
 
 #[cfg(test)]

@@ -1,14 +1,19 @@
 //! Picture of a map: coloured cells with a scale, fold lines; or the Pareto set.
 
-use plotters::prelude::{ColorMap as _, RGBColor, ViridisRGB};
-use sweep::{Map, MapAxis};
+use plotters::prelude::RGBColor;
+use sweep::{Map, MapAxis, Pareto};
 
 use super::map::MapQuantity;
 use crate::failure::{Failure, Outcome};
+use crate::quantity;
 use crate::report::chart::{Chart, INK, MEASURED, Series};
+use crate::report::colour_bar::ColourBar;
+use crate::report::palette::Palette;
 
 /// Size of the picture in pixels of the page.
 const SIZE: (i32, i32) = (720, 520);
+/// Designs behind the Pareto front.
+const BEHIND: RGBColor = RGBColor(0xb4, 0xbd, 0xc6);
 /// Kinds of gait that get a colour and a name of their own; the rest share one.
 const KINDS: [RGBColor; 9] = [
     RGBColor(0x1f, 0x6f, 0xb2),
@@ -31,12 +36,17 @@ pub(super) fn drawn(map: &Map, what: MapQuantity) -> Outcome<String> {
     }
 }
 
-fn named(axis: &MapAxis) -> String {
-    if axis.unit.is_empty() {
-        axis.name.to_owned()
+/// Words with their unit.
+fn labelled(words: &str, unit: &str) -> String {
+    if unit.is_empty() {
+        words.to_owned()
     } else {
-        format!("{} [{}]", axis.name, axis.unit)
+        format!("{words} [{unit}]")
     }
+}
+
+fn named(axis: &MapAxis) -> String {
+    labelled(axis.words, axis.unit)
 }
 
 fn chart(map: &Map, title: String, series: Vec<Series>, legend: Vec<(String, RGBColor)>) -> Chart {
@@ -78,60 +88,45 @@ fn folds(map: &Map) -> impl Iterator<Item = Series> {
 }
 
 fn quantity(map: &Map, what: MapQuantity) -> Outcome<String> {
-    let (name, title) = match what {
-        MapQuantity::Efficiency => ("efficiency", "Lighthill efficiency"),
-        MapQuantity::Speed => ("speed_over_length_per_s", "speed |d|/(L T) [1/s]"),
-        MapQuantity::Amplitude => ("amplitude_rad", "largest joint angle [rad]"),
-        MapQuantity::Rotation => ("rotation_rad", "rotation of a cycle [rad]"),
-        MapQuantity::Lateral => ("lateral_over_length", "Y/L of a cycle"),
-        _ => ("displacement_over_length", "X/L of a cycle"),
+    let name = match what {
+        MapQuantity::Efficiency => "efficiency",
+        MapQuantity::Speed => "speed_over_length_per_s",
+        MapQuantity::Amplitude => "amplitude_rad",
+        MapQuantity::Rotation => "rotation_rad",
+        MapQuantity::Lateral => "lateral_over_length",
+        _ => "displacement_over_length",
     };
     let found = map.quantities.iter().find(|one| one.name == name);
-    let values = &found
-        .ok_or_else(|| {
-            let there: Vec<_> = map.quantities.iter().map(|one| one.name).collect();
-            Failure::BadInput(format!(
-                "no design of this map has a {name}; there are {} (a speed needs max_rate in the spec)",
-                there.join(", ")
-            ))
-        })?
-        .values;
+    let found = found.ok_or_else(|| {
+        let there: Vec<_> = map.quantities.iter().map(|one| one.name).collect();
+        Failure::BadInput(format!(
+            "no design of this map has a {name}; there are {} (a speed needs max_rate in the spec)",
+            there.join(", ")
+        ))
+    })?;
+    let values = &found.values;
     let all = values.iter().flatten().flatten().copied();
     let (low, high) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
         (low.min(value), high.max(value))
     });
-    let color = |value: f64| {
-        let share = if high > low {
-            (value - low) / (high - low)
-        } else {
-            0.5
-        };
-        #[allow(clippy::cast_possible_truncation)] // 0 to 1
-        let share = share as f32;
-        ViridisRGB.get_color(share)
+    let bar = ColourBar {
+        name: labelled(found.words, found.unit),
+        low,
+        high,
+        palette: Palette::Sequential,
     };
     let cells = values.iter().enumerate().flat_map(|(row, values)| {
         values
             .iter()
             .enumerate()
-            .filter_map(move |(column, value)| cell(map, row, column, color((*value)?)))
+            .filter_map(|(column, value)| cell(map, row, column, bar.color((*value)?)))
+            .collect::<Vec<_>>()
     });
     let mut series = vec![Series::Cells(cells.collect())];
     series.extend(folds(map));
-    let step = |share: f64| low + share * (high - low);
-    let legend = [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| {
-        (
-            format!("{:.4}", step(share)).replace('-', "\u{2212}"),
-            color(step(share)),
-        )
-    });
-    chart(
-        map,
-        format!("{title}, best for {}", map.objective),
-        series,
-        legend.to_vec(),
-    )
-    .svg()
+    series.push(Series::ColourBar(bar.clone()));
+    let title = format!("{}, best for {}", found.words, map.objective);
+    chart(map, title, series, Vec::new()).svg()
 }
 
 fn structure(map: &Map) -> Outcome<String> {
@@ -177,33 +172,78 @@ fn pareto(map: &Map) -> Outcome<String> {
             "no design has a speed: say max_rate in the spec, and plan again".to_owned(),
         ));
     }
+    let place = |speed: f64, efficiency: f64| (speed, 1e2 * efficiency);
     let points: Vec<(f64, f64)> = map
         .pareto
         .iter()
-        .map(|one| (one.speed, 1e2 * one.efficiency))
+        .map(|one| place(one.speed, one.efficiency))
         .collect();
+    let column = |name: &str| map.quantities.iter().find(|one| one.name == name);
+    let designs = column("speed_over_length_per_s").zip(column("efficiency"));
+    let designs = designs.map_or_else(Vec::new, |(speed, efficiency)| {
+        let pairs = speed.values.iter().flatten();
+        pairs
+            .zip(efficiency.values.iter().flatten())
+            .filter_map(|(speed, efficiency)| Some(place((*speed)?, (*efficiency)?)))
+            .collect()
+    });
+    let ends: Vec<(&str, &Pareto)> = match map.pareto.as_slice() {
+        [] => Vec::new(),
+        [both] => vec![("fastest and most efficient", both)],
+        [efficient, .., fast] => vec![("most efficient", efficient), ("fastest", fast)],
+    };
+    let words = ends.into_iter().map(|(best, one)| Series::Word {
+        at: place(one.speed, one.efficiency),
+        text: format!("{best}: {}", design(map, one)),
+        color: INK,
+    });
+    let front = [
+        Series::Dots {
+            points: designs,
+            color: BEHIND,
+            radius: 1.8,
+        },
+        Series::Line {
+            points: points.clone(),
+            color: MEASURED,
+            width: 1.0,
+        },
+        Series::Dots {
+            points,
+            color: MEASURED,
+            radius: 3.0,
+        },
+    ];
     Chart {
         title: format!(
             "designs that none beats in both; gaits best for {}",
             map.objective
         ),
         x_label: "speed |d|/(L T) [1/s]".to_owned(),
-        y_label: "Lighthill efficiency [%]".to_owned(),
+        y_label: "Lighthill efficiency ξ [%]".to_owned(),
         size: SIZE,
         equal_axes: false,
-        series: vec![
-            Series::Line {
-                points: points.clone(),
-                color: MEASURED,
-                width: 1.0,
-            },
-            Series::Dots {
-                points,
-                color: MEASURED,
-                radius: 3.0,
-            },
+        series: front.into_iter().chain(words).collect(),
+        legend: vec![
+            (
+                "not beaten in both, of the whole sweep".to_owned(),
+                MEASURED,
+            ),
+            ("designs of this map".to_owned(), BEHIND),
         ],
-        legend: Vec::new(),
     }
     .svg()
+}
+
+/// Name of a design of the front: its values on the axes of the plan.
+fn design(map: &Map, one: &Pareto) -> String {
+    let values = map.plan_axes.iter().zip(&one.design);
+    let values = values.map(|(axis, value)| {
+        let symbol = axis.words.rsplit(' ').next().unwrap_or_default();
+        let is_symbol = symbol.chars().any(|letter| !letter.is_ascii_alphabetic());
+        let name = if is_symbol { symbol } else { axis.words };
+        let number = quantity::significant(*value, 3);
+        labelled(&format!("{name} {number}"), axis.unit).replace(['[', ']'], "")
+    });
+    values.collect::<Vec<_>>().join(", ")
 }

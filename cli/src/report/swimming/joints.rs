@@ -4,7 +4,7 @@ use plotters::style::RGBColor;
 
 use super::{Swimming, time_color};
 use crate::report::drawing::{Anchor, Drawing};
-use crate::report::style::{AXIS, INK, Point};
+use crate::report::style::{AXIS, INK, Point, arrows};
 
 /// A square of the page that shows the plane.
 #[derive(Debug, Clone, Copy)]
@@ -64,8 +64,15 @@ impl Plane {
             drawing.words((across, bottom + 15.0), 12, INK, Anchor::Middle, &text);
             drawing.words((left - 6.0, down + 4.0), 12, INK, Anchor::End, &text);
         }
-        drawing.words((x, bottom + 16.0), 14, INK, Anchor::Middle, "φ₁");
-        drawing.words((left - 8.0, y + 5.0), 14, INK, Anchor::End, "φ₂");
+        drawing.words(
+            (x, bottom + 16.0),
+            14,
+            INK,
+            Anchor::Middle,
+            "front joint φ₁",
+        );
+        let above = (left, top - 6.0);
+        drawing.words(above, 14, INK, Anchor::Start, "back joint φ₂");
     }
 
     /// The first cycle of the gait, in the colours of time where there is no other.
@@ -85,6 +92,14 @@ impl Plane {
         for (number, piece) in points.windows(2).enumerate() {
             let color = time_color((number as f64 + 0.5) / pieces as f64);
             drawing.line(piece, 2.6, (color, 1.0));
+        }
+        // Heads are eighths of the curve from its start, and so are the marks of the shapes: these begin between two of them.
+        let mut points = points;
+        points.pop();
+        let between = points.len() / 16;
+        points.rotate_left(between);
+        for (at, along) in arrows(&points) {
+            drawing.arrow_head(at, along, 11.0, (INK, 1.0));
         }
     }
 

@@ -11,6 +11,8 @@ pub(crate) use snapshots::snapshots;
 use plotters::style::RGBColor;
 use swimmer_model::{Gait, Link, Links, Model, Pose, Tolerance, trajectory};
 
+use super::palette::Palette;
+
 /// Poses and shapes of the body, from the first instant to the last.
 #[derive(Debug, Clone)]
 pub(crate) struct Swimming {
@@ -39,17 +41,6 @@ pub(crate) struct Moment {
 
 /// Instants in a cycle.
 const A_CYCLE: usize = 240;
-
-/// Colours of time, from the first instant to the last: *viridis* but for its brightest fifth, light to dark, so that the
-/// colour-blind can order them, too.
-const TIME: [[f64; 3]; 6] = [
-    [122.0, 209.0, 81.0],
-    [53.0, 183.0, 121.0],
-    [33.0, 145.0, 140.0],
-    [49.0, 104.0, 142.0],
-    [65.0, 68.0, 135.0],
-    [68.0, 1.0, 84.0],
-];
 
 impl Swimming {
     /// Name of its pictures, for readers of screens.
@@ -110,15 +101,8 @@ impl Swimming {
     }
 }
 
-/// The colour of an instant, 0 for the first and 1 for the last.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // places among six, parts of a byte
+/// Colour of an instant, 0 for the first and 1 for the last: *viridis* but for its brightest fifth, light to dark, so that the
+/// colour-blind can order them, too.
 fn time_color(share: f64) -> RGBColor {
-    let place = share.clamp(0.0, 1.0) * (TIME.len() - 1) as f64;
-    let below = (place.floor() as usize).min(TIME.len() - 2);
-    let part = place - below as f64;
-    let mixed = |index: usize| {
-        let (low, high) = (TIME[below][index], TIME[below + 1][index]);
-        (low + part * (high - low)).round() as u8
-    };
-    RGBColor(mixed(0), mixed(1), mixed(2))
+    Palette::Sequential.color(0.8 * (1.0 - share.clamp(0.0, 1.0)))
 }

@@ -6,7 +6,7 @@ use super::body::{BodyStyle, Window, covered, draw, extent};
 use super::joints::Plane;
 use super::{Swimming, time_color};
 use crate::report::drawing::{Anchor, Drawing};
-use crate::report::style::{INK, Point, TITLE, WORDS};
+use crate::report::style::{INK, Point, TITLE, WORDS, arrows};
 
 /// Width of the picture; area of the swimmer; the plane of the joint angles next to it. Pixels of the page.
 const WIDTH: f64 = 900.0;
@@ -22,6 +22,8 @@ const OF_SEVERAL: usize = 5;
 const AIR: f64 = 14.0;
 /// Under the scene: scale and colours of time.
 const BELOW: f64 = 54.0;
+/// Length of the arrow heads on the path.
+const HEAD: f64 = 10.0;
 /// Pieces of the colour bar.
 const PIECES: u8 = 60;
 
@@ -112,6 +114,9 @@ fn bodies_and_path(drawing: &mut Drawing, window: &Window, swimming: &Swimming, 
     for (number, piece) in path.windows(2).enumerate() {
         let color = time_color((number as f64 + 0.5) / pieces as f64);
         drawing.line(piece, 2.0, (color, 1.0));
+    }
+    for (at, along) in arrows(&path) {
+        drawing.arrow_head(at, along, HEAD, (INK, 1.0));
     }
     if let Some(end) = path.last() {
         drawing.disc(*end, 5.0, (plotters::style::WHITE, 1.0));
