@@ -16,7 +16,6 @@ use link_protocol::Refusal;
 use operations::ErrorKind;
 use operations::calibrate::{Fitted, MiddleLink, Run, single};
 use operations::optimize::searched;
-use operations::robot_limits::PERIOD_S;
 use swimmer_files::{
     AnyGait, Campaign, GaitSpec, Provenance, ServoFile, SwimmerFile, write_atomically,
 };
@@ -65,7 +64,9 @@ pub(crate) struct Demo {
 const CIRCLES: std::ops::RangeInclusive<u32> = 30..=110;
 const CIRCLE_STEP: usize = 10;
 /// Cycles of each play; the first is start-up and does not count.
-const CYCLES: u32 = 8;
+const CYCLES: u32 = 5;
+/// Duration of a cycle, s, unless the gait needs longer: half of a laboratory's, so that the folder stays small.
+const PERIOD_S: f64 = 15.0;
 /// The bound on the joints is tightened by this until the robot accepts the gait, rad …
 const BOUND_STEP: f64 = 0.02;
 /// … at most down to this, rad.

@@ -54,7 +54,7 @@ fn the_papers_robot_and_what_the_demo_leaves_behind() {
     let report = std::fs::read_to_string(out.join("report.html")).unwrap();
     assert!(report.starts_with("<!doctype html>") && report.matches("<svg").count() >= 6);
     assert!(
-        report.contains("The swimmer under the optimised gait") && report.contains("7 cycles<"),
+        report.contains("The swimmer under the optimised gait") && report.contains("4 cycles<"),
         "the swimmer itself"
     );
     fits_a_telephone(&report);
@@ -67,6 +67,11 @@ fn the_papers_robot_and_what_the_demo_leaves_behind() {
         assert!(out.join(file).is_file(), "{file} is missing");
     }
     assert!(Path::new(found["gait"].as_str().unwrap()).is_relative());
+    let bytes: u64 = std::fs::read_dir(&out)
+        .unwrap()
+        .map(|entry| entry.unwrap().metadata().unwrap().len())
+        .sum();
+    assert!(bytes < 15_000_000, "the folder has {bytes} bytes");
     assert_eq!(
         std::fs::read_dir(folder.path()).unwrap().count(),
         1,
@@ -116,7 +121,7 @@ fn wrong_gaits_are_named(demo: &Path) {
             "--gait",
             gait,
             "--period",
-            "30",
+            "15",
         ];
         swimmer_in(demo, &[&words[..], &["--swimmer", "robot"]].concat()).with_status(0)
     };
@@ -276,7 +281,7 @@ fn what_a_calibration_leaves_behind(demo: &Path) {
 
 /// The same with the real firmware in the middle.
 #[test]
-#[ignore = "emulates three quarters of an hour of the chip: minutes"]
+#[ignore = "emulates a quarter of an hour of the chip: minutes"]
 fn the_papers_robot_with_its_firmware() {
     let board = crate::emulated::board();
     let folder = tempfile::tempdir().unwrap();

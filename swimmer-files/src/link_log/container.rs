@@ -1,4 +1,4 @@
-//! Common contents of every link log, independent of the output: channels, schemas, chunks of half a second.
+//! Common contents of every link log, independent of the output: channels, schemas, chunks of two seconds.
 
 use std::collections::BTreeMap;
 use std::io::{Seek, Write};
@@ -19,8 +19,9 @@ const TELEMETRY_SCHEMA: &str = include_str!("telemetry.json");
 const TELEMETRY_SCHEMA_NAME: &str = "swimmer.Telemetry";
 const TELEMETRY_TOPIC: &str = "/robot/telemetry";
 
-/// A chunk holds the frames of so long, ns of the host's clock.
-const CHUNK_NS: u64 = 500_000_000;
+/// Duration of a chunk, ns of the host's clock. A log that is cut off lacks at most the last one; chunks of half a second make a log a
+/// third longer.
+const CHUNK_NS: u64 = 2_000_000_000;
 
 /// Compression of chunks, in the calling thread: chunks are small.
 #[cfg(feature = "compressed-logs")]

@@ -1,6 +1,6 @@
 //! Writes a link log as it grows: whatever happens to the program or the disk, what was written stays and can be read.
 //!
-//! Frames go to the file in chunks of half a second of the log's own time, each at once; so a log that is cut off ends with a
+//! Frames go to the file in chunks of two seconds of the log's own time, each at once; so a log that is cut off ends with a
 //! whole chunk, or with a piece of one, which the reader passes over.
 
 use std::fs::File;
