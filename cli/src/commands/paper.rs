@@ -11,9 +11,9 @@ use crate::failure::{Failure, Outcome};
 use crate::new_folder::NewFolder;
 use crate::output::Output;
 use crate::paper::{deviation, figures, number, open, page, printed};
+use crate::picture_file::Kind;
 use crate::progress::Progress;
 use crate::quantity::Table;
-use crate::raster::png;
 
 /// Compute every number and figure of the paper: the paper's value, ours, the deviation
 ///
@@ -55,8 +55,9 @@ impl Paper {
             for figure in &drawn {
                 let place = |ending: &str| folder.draft().join(format!("{}.{ending}", figure.name));
                 let drawing = figure.svg()?;
-                write_atomically(&place("svg"), drawing.as_bytes())?;
-                write_atomically(&place("png"), &png(&drawing)?)?;
+                for kind in [Kind::Svg, Kind::Png] {
+                    kind.write(&place(kind.ending()), &drawing)?;
+                }
                 write_atomically(&place("csv"), figure.csv()?.as_bytes())?;
             }
             let html = page(&rows, &drawn)?;

@@ -32,14 +32,14 @@ const PNG_SCALE: f32 = 2.0;
 /// Points of a PDF per pixel of the page, 96 to the inch.
 const PDF_SCALE: f32 = 0.75;
 
-/// Returns a figure (SVG) as a PNG file, twice as fine as its size on the page.
+/// Returns a figure (SVG) as a PNG file, twice as fine as its size on the page; programs for print lay it out `width_mm` wide.
 ///
 /// # Errors
 /// [`Failure::Tried`] if it is no SVG or too large.
-pub(crate) fn png(drawing: &str) -> Outcome<Vec<u8>> {
+pub(crate) fn png(drawing: &str, width_mm: f64) -> Outcome<Vec<u8>> {
     let image = painted(drawing, PNG_SCALE)?;
     let mut file = Vec::new();
-    encoded(&image, &mut file).map_err(|error| failed(&error))?;
+    encoded(&image, width_mm, &mut file).map_err(|error| failed(&error))?;
     Ok(file)
 }
 
@@ -100,12 +100,19 @@ fn parsed(drawing: &str) -> Outcome<Tree> {
     Tree::from_str(drawing, &options).map_err(|error| failed(&error))
 }
 
-fn encoded(image: &Image, file: &mut Vec<u8>) -> Result<(), png::EncodingError> {
+fn encoded(image: &Image, width_mm: f64, file: &mut Vec<u8>) -> Result<(), png::EncodingError> {
     let side = |pixels: usize| u32::try_from(pixels).unwrap_or(u32::MAX);
     let mut encoder = png::Encoder::new(file, side(image.width), side(image.height));
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::High);
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // thousands
+    let per_metre = (1e3 * image.width as f64 / width_mm).round() as u32;
+    encoder.set_pixel_dims(Some(png::PixelDimensions {
+        xppu: per_metre,
+        yppu: per_metre,
+        unit: png::Unit::Meter,
+    }));
     let mut writer = encoder.write_header()?;
     writer.write_image_data(image.pixels.as_flattened())?;
     writer.finish()
