@@ -115,12 +115,30 @@ fn bodies_and_path(drawing: &mut Drawing, window: &Window, swimming: &Swimming, 
         let color = time_color((number as f64 + 0.5) / pieces as f64);
         drawing.line(piece, 2.0, (color, 1.0));
     }
-    for (at, along) in arrows(&path) {
-        drawing.arrow_head(at, along, HEAD, (INK, 1.0));
-    }
+    direction(drawing, swimming, &path);
     if let Some(end) = path.last() {
         drawing.disc(*end, 5.0, (plotters::style::WHITE, 1.0));
         drawing.disc(*end, 3.4, (time_color(1.0), 1.0));
+    }
+}
+
+/// Arrow heads along the path of a single cycle; of several cycles, whose path runs back and forth, an arrow of the net motion.
+fn direction(drawing: &mut Drawing, swimming: &Swimming, path: &[Point]) {
+    if swimming.cycles == 1 {
+        for (at, along) in arrows(path) {
+            drawing.arrow_head(at, along, HEAD, (INK, 1.0));
+        }
+        return;
+    }
+    let (Some(start), Some(end)) = (path.first(), path.last()) else {
+        return;
+    };
+    let net = (end.0 - start.0, end.1 - start.1);
+    let length = net.0.hypot(net.1);
+    if length > 2.0 * HEAD {
+        let at = (start.0 + 0.55 * net.0, start.1 + 0.55 * net.1);
+        drawing.line(&[*start, *end], 1.2, (INK, 1.0));
+        drawing.arrow_head(at, (net.0 / length, net.1 / length), 1.4 * HEAD, (INK, 1.0));
     }
 }
 
