@@ -71,10 +71,10 @@ def test_a_campaign_is_fitted(laboratory: Path) -> None:
 
 def test_a_single_run_gives_its_cycles(laboratory: Path, robot: sw.Swimmer, tmp_path: Path) -> None:
     file = laboratory / "circle-070.csv"
-    one = sw.calibrate(file, gait=sw.Gait.load("circle:70deg"), period=30.0, swimmer=robot)
+    one = sw.calibrate(file, gait=sw.Gait.load("circle:70deg"), period=15.0, swimmer=robot)
     assert one.swimmer is None and len(one.runs) == 1 and one.runs[0].cycles >= 3
     with pytest.raises(sw.BadInput, match="a single run is not fitted"):
-        sw.calibrate(file, gait="circle:70deg", period=30.0, swimmer=robot, output=tmp_path / "fit")
+        sw.calibrate(file, gait="circle:70deg", period=15.0, swimmer=robot, output=tmp_path / "fit")
 
 
 def test_tracks_say_what_a_recording_holds(laboratory: Path) -> None:
