@@ -35,7 +35,7 @@ const signed = (value: number) => `${value < 0 ? "" : "+"}${figure(value, 1)}`;
 export function Further() {
   const fit = further.value;
   return (
-    <section class="card scroll" aria-label="What else may be off">
+    <section class="card scroll" aria-label="What else may be off" tabIndex={0}>
       <h2>What else may be off</h2>
       <fieldset class="choices">
         <legend class="soft">Fit more than rₛ and χ:</legend>

@@ -16,7 +16,7 @@ export function Head({ of }: { of: readonly string[] }) {
 /** A table in a card of its own. */
 export function Table({ title, id, head, notes = [], children }: { title: string; id: string; head: readonly string[]; notes?: readonly string[]; children: ComponentChildren }) {
   return (
-    <section class="card scroll" aria-label={title}>
+    <section class="card scroll" aria-label={title} tabIndex={0}>
       <h2>{title}</h2>
       <table class="readout" id={id}><Head of={head} /><tbody>{children}</tbody></table>
       {notes.map((note) => <p key={note} class="soft">{note}</p>)}
@@ -46,7 +46,7 @@ export function Parameters({ fit, evidence, assessment }: { fit: FitOutput; evid
   const cell = (value: number | undefined, range: [number, number] | undefined, tell: (value: number) => string, none: string) =>
     value === undefined || range === undefined ? none : <>{tell(value)}<br /><small class="soft">{`${tell(range[0])} … ${tell(range[1])}`}</small></>;
   return (
-    <section class="card scroll" aria-label="Fit">
+    <section class="card scroll" aria-label="Fit" tabIndex={0}>
       <h2>Fit</h2>
       <table class="readout" id="fit">
         <Head of={[`${Math.round(fit.intervals.level * 100)} % intervals`, "rₛ [mm]", "χ", "correlation"]} />

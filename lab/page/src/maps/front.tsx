@@ -67,7 +67,7 @@ export function Front({ map }: { map: SweepMap }) {
       </Chart>
       <section class="card" aria-label="Pareto front">
         <h2>Pareto front, of the whole sweep</h2>
-        <div class="scroll">
+        <div class="scroll" role="region" aria-label="Designs of the front" tabIndex={0}>
           <table id="pareto">
             <thead><tr><th scope="col">design</th><th scope="col">speed [1/s]</th><th scope="col">ξ [%]</th></tr></thead>
             <tbody>
