@@ -42,7 +42,7 @@ pub(crate) fn crossing_or_folding(share: &CrossingShare<f64>) -> String {
     }
 }
 
-/// A number with so many significant digits, without trailing zeros.
+/// Formats a number with a given count of significant digits, without trailing zeros.
 pub(crate) fn significant(value: f64, digits: i32) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");

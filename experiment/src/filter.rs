@@ -41,7 +41,7 @@ const CLOCK_SET_S: f64 = 1.0;
 const CONFIRMED: u32 = 5;
 /// A pose jumps if it is farther than this from the prediction \[m\],
 const JUMP_M: f64 = 0.02;
-/// and than so many standard deviations.
+/// and farther than this in standard deviations.
 const JUMP_SIGMAS: f64 = 6.0;
 
 /// A pose that jumped and is not yet confirmed.

@@ -49,7 +49,7 @@ pub struct TrackedPlay {
 }
 
 impl TrackedPlay {
-    /// A play of so many cycles, the first of which began at `began_s`. `others` are gaits that the robot may play by mistake.
+    /// Begins to track a play, whose first cycle began at `began_s`. `others` are gaits that the robot may play by mistake.
     pub fn new<'a>(
         model: &Model<f64>,
         walls: Option<TankWalls>,

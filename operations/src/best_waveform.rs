@@ -13,7 +13,7 @@ use crate::passive::SAMPLES;
 use crate::robot_limits::PERIOD_S;
 use crate::{Context, Error, SwimmerSource, model};
 
-/// Search for the best waveform. What is missing comes from the swimmer file: `[passive]` and `[servo]`.
+/// Search for the best waveform. Missing values come from the swimmer file: `[passive]` and `[servo]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Request {
     /// The swimmer.

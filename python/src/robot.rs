@@ -110,7 +110,7 @@ impl RobotLink {
 
 #[pymethods]
 impl RobotLink {
-    /// Connects. What the call reports is in `notes`.
+    /// Connects. `notes` holds the messages of the call.
     #[new]
     fn new(py: Python<'_>, settings: PyRef<'_, RobotSettings>) -> PyResult<Self> {
         let options = settings.options.clone();
@@ -168,7 +168,7 @@ impl RobotLink {
         self.document(py, RobotHandle::stop)
     }
 
-    /// Next report of the robot; None if there is none within a second.
+    /// Next report of the robot; None if none arrives within a second.
     fn next_telemetry<'py>(&self, py: Python<'py>) -> PyResult<WithNotes<'py>> {
         self.document(py, RobotHandle::next_telemetry)
     }

@@ -124,7 +124,8 @@ pub struct FrontOutput {
     /// Number of periods.
     pub periods: usize,
     /// Number of periods with a farthest gait.
-    pub told: usize,
+    #[serde(rename = "told")]
+    pub periods_with_gait: usize,
 }
 
 impl FrontOutput {
@@ -133,7 +134,7 @@ impl FrontOutput {
         Self {
             file,
             periods: front.periods.len(),
-            told: front.farthest.iter().flatten().count(),
+            periods_with_gait: front.farthest.iter().flatten().count(),
         }
     }
 }

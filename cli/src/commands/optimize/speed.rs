@@ -203,7 +203,7 @@ fn add_play(rows: &mut Rows, output: &Output) {
             format!(
                 "{}: the farthest gait in {} of {} periods",
                 front.file.display(),
-                front.told,
+                front.periods_with_gait,
                 front.periods
             ),
         );

@@ -328,7 +328,7 @@ impl RobotHandle {
         })
     }
 
-    /// Waits for the next report of the robot. `None` if there is none within a second, which a lost link explains.
+    /// Waits for the next report of the robot. `None` if no report arrives within a second; the link may be lost.
     ///
     /// # Errors
     /// An interrupt, after which the robot is stopped; and the link's.

@@ -119,7 +119,7 @@ fn files_of_gaits_that_join_pass() {
     }
 }
 
-/// Through a shape there are three gaits, certified, and each costs no more than so much.
+/// Checks that three certified gaits join at a shape, each at no more than its stated cost.
 #[track_caller]
 fn certified_within(swimmer: Swimmer<f64>, max_angle: f64, shape: [f64; 2], most: [f64; 3]) {
     let problem = SteerProblem {
