@@ -61,5 +61,6 @@ fn line_of(stage: Stage) -> Line {
         Stage::JoiningGaits => Line::with_share("looking for gaits that join"),
         Stage::Optima => Line::with_share("looking for optima"),
         Stage::Continuation => Line::with_share("following the gaits"),
+        Stage::Plan => Line::with_share("searching for a plan"),
     }
 }

@@ -7,7 +7,7 @@ use crate::losses::tolerance;
 use crate::path::Polyline;
 
 /// A rectangular tank, inner measures.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Deserialize)]
 pub struct Tank {
     /// Along x \[m\].
     pub length: f64,

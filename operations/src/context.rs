@@ -28,6 +28,8 @@ pub enum Stage {
     Optima,
     /// Continuation of gaits.
     Continuation,
+    /// Search for a plan.
+    Plan,
 }
 
 /// Progress of a long computation.

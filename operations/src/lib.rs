@@ -28,6 +28,7 @@ pub mod fluid;
 pub mod height_map;
 pub mod optimize;
 pub mod passive;
+pub mod plan;
 pub mod played;
 pub mod robot_limits;
 pub mod simulate;

@@ -2,3 +2,5 @@
 
 #[path = "outputs/efficiency.rs"]
 mod efficiency;
+#[path = "outputs/plan.rs"]
+mod plan;

@@ -1,23 +1,21 @@
 //! `swimmer plan`: gaits of one family strung together to a target.
 
-mod output;
-mod playlist;
-
 use std::path::{Path, PathBuf};
 
-use forecast::{Family, PlanError, PlanRequest, Servos, Tank, check_ends, plan};
-use swimmer_files::{AnyGait, GaitFile, SwimmerFile};
-use swimmer_model::{Gait as _, Link, Pose};
+use forecast::{Family, Tank};
+pub(crate) use operations::plan::Target;
+use operations::plan::{self, Request};
+use operations::{Files, SwimmerSource};
+use swimmer_files::SwimmerFile;
 
-use self::output::answer;
-use self::playlist::write_playlist;
-use super::optimize::steer::{Steer, named};
+use super::optimize::steer::Steer;
 use super::robot::preflight::tank;
-use crate::arguments::{angle, length, load_swimmer};
-use crate::failure::{Failure, Outcome};
+use crate::arguments::{angle, length};
+use crate::context::perform;
+use crate::failure::Outcome;
 use crate::new_file::may_be_written;
 use crate::output::Output;
-use crate::progress::Progress;
+use crate::quantity::{self, Rows};
 
 /// String the gaits of `optimize steer` together so that the swimmer comes to a target
 ///
@@ -56,14 +54,6 @@ pub(crate) struct Plan {
     output: Option<PathBuf>,
 }
 
-/// A place, perhaps with a heading.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Target {
-    pub(crate) x: f64,
-    pub(crate) y: f64,
-    pub(crate) heading: Option<f64>,
-}
-
 pub(crate) fn target(text: &str) -> Result<Target, String> {
     let bad = || format!("`{text}` is no place: give X,Y or X,Y,ANGLE, as 0.2,-0.1,90deg");
     let parts: Vec<&str> = text.split(',').map(str::trim).collect();
@@ -75,15 +65,15 @@ pub(crate) fn target(text: &str) -> Result<Target, String> {
             Err(bad())
         }
     };
-    let (x, y, heading) = match parts[..] {
+    let (x, y, heading_rad) = match parts[..] {
         [x, y] => (x, y, None),
         [x, y, heading] => (x, y, Some(angle(heading)?)),
         _ => return Err(bad()),
     };
     Ok(Target {
-        x: metres(x)?,
-        y: metres(y)?,
-        heading,
+        x_m: metres(x)?,
+        y_m: metres(y)?,
+        heading_rad,
     })
 }
 
@@ -92,118 +82,103 @@ impl Plan {
         if let Some(path) = &self.output {
             may_be_written(path)?;
         }
-        let file = load_swimmer(&self.swimmer)?;
-        let model = crate::arguments::model(&file)?;
-        let regular = file.swimmer.check_regular();
-        regular.map_err(|error| Failure::bad_input(&error))?;
-        let swimmer = &file.swimmer;
-        if self.tank.is_some() && swimmer.sphere_on != Link::Middle && swimmer.sphere_radius > 0.0 {
-            return Err(Failure::BadInput(format!(
-                "`{}` has its sphere on a side link ([sphere] on), and the distance to walls is that of a sphere on the middle \
-                 link: leave --tank out",
-                file.name
-            )));
-        }
-        let request = PlanRequest {
-            from: Pose::new(self.from.x, self.from.y, self.from.heading.unwrap_or(0.0)),
-            to: nalgebra::Vector2::new(self.to.x, self.to.y),
-            heading: self.to.heading,
+        let request = Request {
+            swimmer: SwimmerSource::from(self.swimmer.as_str()),
+            steer: self.steer.options(),
+            gaits: self.gaits,
+            from: self.from,
+            to: self.to,
             tank: self.tank,
-            margin: self.margin,
-            servos: Servos::on_the_robot(file.servo.unwrap_or_default()),
+            margin_m: self.margin,
         };
-        check_ends(&model, &request).map_err(|error| Failure::tried(&error))?;
-        let mut family = self.family(&file)?;
-        let plan = |family: &Family| {
-            let progress = Progress::with_share("searching for a plan");
-            plan(&model, family, &request, &|share| progress.at_share(share))
-        };
-        let mut found = plan(&family);
-        let no_room = matches!(found, Err(PlanError::Bent { .. } | PlanError::NoWay { .. }));
-        if no_room && self.gaits.is_none() && self.steer.shape.is_none() {
-            // Next to a wall the straight swimmer may fit where the bent one does not.
-            let mut straight = self.steer.clone();
-            straight.shape = Some([0.0; 2]);
-            family = joined(&straight, &file)?;
-            found = plan(&family);
+        let mut found = perform(|context| plan::run(&request, context))?;
+        if let Some(path) = &self.output {
+            write_playlist(path, &mut found)?;
         }
-        let found = found.map_err(|error| Failure::tried(&error))?;
-        let off = |share: f64| -> Outcome<[f64; 2]> {
-            let mut other = file.clone();
-            other.swimmer.chi *= share;
-            other.swimmer.side_chi = other
-                .swimmer
-                .side_chi
-                .map(|both| both.map(|chi| chi * share));
-            let model = crate::arguments::model(&other)?;
-            let reached = found.reached_by(&model, &request.from);
-            Ok(found.apart_from(&reached))
-        };
-        // χ has no effect in a perfect fluid.
-        let is_viscous = file.swimmer.is_viscous();
-        let wrong = if is_viscous {
-            Some([off(0.95)?, off(1.05)?])
-        } else {
-            None
-        };
-        let gaits = match &self.output {
-            Some(path) => Some(write_playlist(path, &file, &family, &found)?),
-            None => None,
-        };
-        output.print(&answer(&file.name, &found, wrong, gaits, self.output));
+        output.rendered(&found, &text(&found));
         Ok(())
     }
+}
 
-    fn family(&self, file: &SwimmerFile) -> Outcome<Family> {
-        let Some(folder) = &self.gaits else {
-            return joined(&self.steer, file);
-        };
-        family_in(folder, self.steer.rates(file)?)
+/// Writes the playlist, and the gaits next to it.
+fn write_playlist(path: &Path, found: &mut plan::Output) -> Outcome {
+    let playlist = found.name_files(path)?;
+    for step in &found.steps {
+        let file = path.with_file_name(&step.gait);
+        may_be_written(&file)?;
+        step.file.save(&file)?;
     }
+    playlist.save(path)?;
+    Ok(())
+}
+
+/// Output as text.
+fn text(output: &plan::Output) -> String {
+    let mut rows = Rows::default();
+    for step in &output.steps {
+        rows.row(
+            step.gait.clone(),
+            format!(
+                "{} cycles of {:.3} s, at {:.2} % of its size",
+                step.cycles,
+                step.period_s,
+                step.scale * 100.0
+            ),
+        );
+    }
+    let reached = &output.reached;
+    rows.row(
+        "reaches",
+        format!(
+            "({}, {}), heading {}: {:.1e} m off",
+            quantity::length(reached.x_m),
+            quantity::length(reached.y_m),
+            quantity::angle(reached.heading_rad),
+            output.off_m
+        ),
+    );
+    for (label, off) in [
+        ("χ 5 % lower", output.off_if_chi_is_5_percent_lower),
+        ("χ 5 % higher", output.off_if_chi_is_5_percent_higher),
+    ] {
+        let Some(off) = off else { continue };
+        rows.row(
+            label,
+            format!(
+                "{} and {} off",
+                quantity::length(off.distance_m),
+                quantity::angle(off.angle_rad)
+            ),
+        );
+    }
+    rows.row(
+        "found",
+        format!(
+            "{} chains meet the target, {} of them within the walls",
+            output.chains, output.chains_within_walls
+        ),
+    );
+    if let Some(path) = &output.playlist {
+        rows.row("written to", path.display().to_string());
+    }
+    format!(
+        "{}: the quickest plan found takes {:.1} s\n{rows}",
+        output.name, output.duration_s
+    )
 }
 
 /// The gaits of a folder that `optimize steer -o` wrote, as fast as servos of these rates \[rad/s\] turn.
 ///
 /// # Errors
-/// [`Failure::BadInput`] if a gait is missing or cannot be read.
+/// A gait is missing or cannot be read.
 pub(crate) fn family_in(folder: &Path, rates: [f64; 2]) -> Outcome<Family> {
-    let mut all = Vec::new();
-    for name in ["forward", "left", "turn-left"] {
-        let path = folder.join(format!("{name}.gait"));
-        let gait = GaitFile::load(&path)?;
-        let curve = AnyGait::from_file(&gait)
-            .map_err(|error| Failure::BadInput(format!("{}: {error}", path.display())))?;
-        // As fast as the servos turn.
-        let period = (0..curve.pieces())
-            .flat_map(|piece| {
-                let end = curve.piece_end(piece);
-                [end - 1e-9, end + 1e-9].map(|u| curve.at(u.rem_euclid(1.0)).rate)
-            })
-            .map(|rate| (rate.x.abs() / rates[0]).max(rate.y.abs() / rates[1]))
-            .fold(0.0, f64::max);
-        all.push((curve, period));
-    }
-    family_of(all)
+    Ok(plan::family_in(folder, rates, Files::Disk)?)
 }
 
-/// The gaits that are found.
-pub(crate) fn joined(steer: &Steer, file: &SwimmerFile) -> Outcome<Family> {
-    let steering = steer.find(file)?;
-    let gaits = [0, 2, 4].map(|at| {
-        let (_, joined, _) = named(&steering)[at];
-        let curve = AnyGait::from_file(&joined.gait_file(&file.name, false));
-        curve.map(|curve| (curve, joined.period))
-    });
-    let all = gaits.into_iter().collect::<Result<Vec<_>, _>>();
-    family_of(all.map_err(|error| Failure::Tried(error.to_string()))?)
-}
-
-fn family_of(gaits: Vec<(AnyGait, f64)>) -> Outcome<Family> {
-    let gaits = gaits
-        .try_into()
-        .map_err(|_| Failure::Tried("a family has three gaits".to_owned()))?;
-    Ok(Family {
-        gaits,
-        mirrored: false,
-    })
+/// The gaits that a search finds.
+///
+/// # Errors
+/// Those of the search.
+pub(crate) fn family_of_search(steer: &Steer, file: &SwimmerFile) -> Outcome<Family> {
+    perform(|context| plan::family_of_search(file, &steer.options(), context))
 }

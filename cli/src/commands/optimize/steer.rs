@@ -4,8 +4,7 @@ use std::path::{Path, PathBuf};
 
 use gait_optimizer::Steering;
 use operations::SwimmerSource;
-pub(crate) use operations::optimize::steer::named;
-use operations::optimize::steer::{self, JoinedOutput, Options, Request};
+use operations::optimize::steer::{self, JoinedOutput, Options, Request, named};
 use swimmer_files::SwimmerFile;
 
 use crate::arguments::{angle, rate};
@@ -29,7 +28,7 @@ pub(crate) struct Steer {
     bounds: CycleBounds,
     /// The shape at which the gaits shall join: φ₁ and φ₂
     #[arg(long, value_name = "ANGLE,ANGLE", value_parser = shape, allow_hyphen_values = true)]
-    pub(crate) shape: Option<[f64; 2]>,
+    shape: Option<[f64; 2]>,
 }
 
 fn shape(text: &str) -> Result<[f64; 2], String> {
@@ -50,7 +49,7 @@ impl Steer {
     }
 
     /// Options of the search.
-    fn options(&self) -> Options {
+    pub(crate) fn options(&self) -> Options {
         Options {
             max_rate: self.max_rate.clone(),
             bounds: self.bounds.into(),
@@ -70,7 +69,7 @@ impl Steer {
     ///
     /// # Errors
     /// Those of the search.
-    pub(crate) fn find(&self, file: &SwimmerFile) -> Outcome<Steering> {
+    fn find(&self, file: &SwimmerFile) -> Outcome<Steering> {
         let (steering, _) = perform(|context| steer::find(file, &self.options(), context))?;
         Ok(steering)
     }

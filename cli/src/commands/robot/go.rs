@@ -19,7 +19,7 @@ use super::preflight::tank;
 use super::tracking::Tracked;
 use crate::arguments::{angle, length, load_swimmer};
 use crate::commands::optimize::steer::{Steer, write_straight};
-use crate::commands::plan::{Target, family_in, joined, target};
+use crate::commands::plan::{Target, family_in, family_of_search, target};
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
 use crate::new_folder::NewFolder;
@@ -181,9 +181,9 @@ impl Go {
                     .iter()
                     .chain(&self.to)
                     .map(|target| experiment::Target {
-                        x_m: target.x,
-                        y_m: target.y,
-                        heading_rad: target.heading,
+                        x_m: target.x_m,
+                        y_m: target.y_m,
+                        heading_rad: target.heading_rad,
                     })
                     .collect(),
             ),
@@ -202,10 +202,10 @@ impl Go {
 
 /// Refuses a target at which the straight swimmer would touch the margin.
 fn inside(target: &Target, file: &SwimmerFile, tank: &Tank, margin: f64) -> Outcome {
-    let pose = Pose::new(target.x, target.y, target.heading.unwrap_or(0.0));
+    let pose = Pose::new(target.x_m, target.y_m, target.heading_rad.unwrap_or(0.0));
     let swimmer = &file.swimmer;
     let mut parts = vec![(pose.position(), swimmer.sphere_radius)];
-    if target.heading.is_some() {
+    if target.heading_rad.is_some() {
         let ends = swimmer.links.outline(&Vector2::zeros());
         parts.extend(ends.map(|end| (pose.transform(&end), 0.0)));
     }
@@ -231,8 +231,8 @@ fn inside(target: &Target, file: &SwimmerFile, tank: &Tank, margin: f64) -> Outc
     };
     Err(Failure::BadInput(format!(
         "the target {},{}: {reach}; the tank reaches ±{} m along and ±{} m across from its centre. Name a target farther inside",
-        target.x,
-        target.y,
+        target.x_m,
+        target.y_m,
         tank.length / 2.0,
         tank.width / 2.0
     )))
@@ -253,7 +253,7 @@ fn family(folder: Option<&Path>, file: &SwimmerFile) -> Outcome<Family> {
             aside(
                 "note: the gaits are searched for, which takes a minute; --gaits DIR keeps them for the next time.",
             );
-            joined(&steer, file)?
+            family_of_search(&steer, file)?
         }
     };
     let is_straight = |gait: &swimmer_files::AnyGait| gait.at(0.0).phi.norm() < 1e-6;
@@ -325,8 +325,13 @@ mod tests {
             length: 1.0,
             width: 0.6,
         };
-        let refused = |x, y, heading: Option<f64>| {
-            inside(&Target { x, y, heading }, &file, &tank, 0.01).is_err()
+        let refused = |x_m, y_m, heading_rad: Option<f64>| {
+            let target = Target {
+                x_m,
+                y_m,
+                heading_rad,
+            };
+            inside(&target, &file, &tank, 0.01).is_err()
         };
         assert!(
             refused(0.6, 0.0, None) && refused(0.4, 0.0, Some(0.0)) && refused(0.0, 0.25, None)
