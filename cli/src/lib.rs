@@ -13,7 +13,6 @@ mod captured;
 mod commands;
 mod context;
 mod csv_text;
-mod document;
 mod experiments;
 mod failure;
 mod in_fluid;

@@ -79,11 +79,6 @@ impl Rows {
         self.0.push((label.into(), value.into()));
         self
     }
-
-    /// `true` without rows.
-    pub(crate) fn is_empty(&self) -> bool {
-        self.0.is_empty()
-    }
 }
 
 impl fmt::Display for Rows {

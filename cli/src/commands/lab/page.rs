@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use percent_encoding::{NON_ALPHANUMERIC, utf8_percent_encode};
-use serde_json::json;
+use serde::Serialize;
 use swimmer_files::SwimmerFile;
 
 use crate::failure::{Failure, Outcome};
@@ -71,16 +71,39 @@ fn read(path: &Path) -> Outcome<Vec<u8>> {
     Ok(page)
 }
 
+/// State of the page's Explore tab in a link; other parts of the state keep their defaults.
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct ShownDocument {
+    gaits: [ShownGait; 1],
+    /// Bound of the optimiser \[rad\].
+    max_angle: f64,
+    /// Period of a cycle \[s\].
+    period: f64,
+    /// Text of the swimmer file.
+    swimmer: String,
+}
+
+/// Gait that the page searches.
+#[derive(Serialize)]
+struct ShownGait {
+    kind: &'static str,
+    what: &'static str,
+}
+
 /// A link from a page in the same folder to the lab page `name`, open at a swimmer and the farthest gait within a bound \[rad\]: the
 /// page finds that gait itself.
 pub(crate) fn beside(name: &str, swimmer: &SwimmerFile, max_angle: f64, period_s: f64) -> String {
-    let shown = json!({
-        "swimmer": swimmer.to_toml(),
-        "maxAngle": max_angle,
-        "period": period_s,
-        "gaits": [{ "kind": "optimum", "what": "displacement" }],
-    });
-    let text = shown.to_string();
+    let shown = ShownDocument {
+        gaits: [ShownGait {
+            kind: "optimum",
+            what: "displacement",
+        }],
+        max_angle,
+        period: period_s,
+        swimmer: swimmer.to_toml(),
+    };
+    let text = serde_json::to_string(&shown).unwrap_or_default();
     format!(
         "{name}#open={}",
         utf8_percent_encode(&text, NON_ALPHANUMERIC)

@@ -1,16 +1,18 @@
 //! `swimmer robot info`: who is there.
 
+use std::fmt;
+
 use link_protocol::{
     Board, Configuration, Counters, HelloReply, ResetReason, TableInfo, TangentialDrag, VersionName,
 };
+use serde::Serialize;
 
 use super::access::Access;
 use super::outputs::{Gait, gait_line};
 use super::port::Pace;
-use crate::document::{Document, object};
 use crate::failure::Outcome;
 use crate::output::Output;
-use crate::quantity;
+use crate::quantity::{self, Rows};
 
 /// Asks the robot who it is.
 pub(super) fn run(access: &Access, output: Output) -> Outcome {
@@ -23,7 +25,7 @@ pub(super) fn run(access: &Access, output: Output) -> Outcome {
     } else {
         None
     };
-    output.print(&answer(
+    output.print(&InfoOutput::new(
         robot.info(),
         crash_message,
         &configuration,
@@ -33,146 +35,215 @@ pub(super) fn run(access: &Access, output: Output) -> Outcome {
     line.close()
 }
 
-/// Output from the robot's replies.
-fn answer(
-    hello: &HelloReply,
+/// Board, firmware, settings and counters of a robot. The JSON document of `swimmer robot info`.
+#[derive(Debug, Serialize)]
+pub(crate) struct InfoOutput {
+    /// Board.
+    board: &'static str,
+    /// Version of the firmware.
+    firmware: String,
+    /// Commit of the firmware; null if it is unknown.
+    commit: Option<String>,
+    /// Lowest and present version of the protocol.
+    protocol: [u8; 2],
+    /// Hash of the protocol's messages.
+    schema_key: String,
+    /// Cause of the last start: power on, watchdog, crash or reset pin.
+    reset_reason: &'static str,
+    /// Message of a crash before that start.
     crash_message: Option<String>,
-    body: &Configuration,
-    table: Option<&TableInfo>,
-    counters: &Counters,
-) -> Document {
-    let version = hello.firmware;
-    let firmware = format!("{}.{}.{}", version.major, version.minor, version.patch);
-    let commit = String::from_utf8_lossy(&version.commit)
-        .trim_end_matches('\0')
-        .to_owned();
-    let commit = (!commit.is_empty() && commit != "00000000").then_some(commit);
-    let of_commit = commit
-        .as_deref()
-        .map_or(String::new(), |commit| format!(", commit {commit}"));
-    let reset_reason = match hello.reset_reason {
-        ResetReason::PowerOn => "power on",
-        ResetReason::Watchdog => "watchdog",
-        ResetReason::Crash => "crash",
-        ResetReason::Pin => "reset pin",
-    };
-    let limits = &hello.limits;
-    let pulse_us = [limits.pulse_min_ns, limits.pulse_max_ns].map(|ns| f64::from(ns) / 1e3);
-    let gait = table.map(Gait::new);
-    let mut answer = Document::default();
-    answer
-        .row("board", board(hello.board))
-        .row(
-            "firmware",
-            format!(
-                "{firmware}{of_commit}, protocol {} to {}",
-                VersionName(hello.protocol_min),
-                VersionName(hello.protocol_current)
-            ),
-        )
-        .row(
-            "started by",
-            match &crash_message {
-                Some(message) => format!("{reset_reason}: {message}"),
-                None => reset_reason.to_owned(),
-            },
-        )
-        .row(
-            "limits",
-            format!(
-                "{} and {}/s, pulses {} to {} µs, {} knots",
-                quantity::angle(f64::from(limits.max_angle)),
-                quantity::angle(f64::from(limits.max_rate)),
-                pulse_us[0],
-                pulse_us[1],
-                limits.max_knots,
-            ),
-        )
-        .key("board", board(hello.board))
-        .key("firmware", firmware)
-        .key("commit", commit)
-        .key("protocol", [hello.protocol_min, hello.protocol_current])
-        .key(
-            "schema_key",
-            format!("{:016x}", u64::from_be_bytes(hello.schema_key)),
-        )
-        .key("reset_reason", reset_reason)
-        // Message of a crash before that start.
-        .key("crash_message", crash_message)
-        .key("session", hello.session)
-        .key(
-            "limits",
-            object! {
-                "max_angle_rad": limits.max_angle,
-                "max_rate_rad_s": limits.max_rate,
-                "pulse_us": pulse_us,
-                "knots": limits.max_knots,
-            },
-        );
-    add_body(&mut answer, body);
-    answer
-        .row("gait", gait_line(gait.as_ref()))
-        .key("gait", gait);
-    add_traffic(&mut answer, counters);
-    answer
+    /// Number of the session.
+    session: u16,
+    /// Limits in force.
+    limits: LimitsOutput,
+    /// Lengths and drag with which the robot computes its pose.
+    configuration: ConfigurationOutput,
+    /// Table of the gait; null without one.
+    gait: Option<Gait>,
+    /// Counters since the start.
+    counters: CountersOutput,
 }
 
-/// Adds the lengths and the drag that the robot counts with.
-fn add_body(answer: &mut Document, body: &Configuration) {
-    let c_t = match body.tangential_drag {
-        TangentialDrag::LogAspect(value) => format!("2πμ / {value}"),
-        TangentialDrag::HalfThickness(value) => format!("per link, half thickness {value} m"),
-        TangentialDrag::OverViscosity(value) => format!("{value} μ"),
-    };
-    answer
-        .row(
-            "links",
-            format!(
-                "{} / {} / {} mm",
-                millimetres(body.front_m),
-                millimetres(body.middle_m),
-                millimetres(body.back_m)
-            ),
-        )
-        .row(
-            "drag",
-            format!(
-                "χ = {}, c_t = {c_t}, sphere {} mm",
-                body.chi,
-                millimetres(body.sphere_radius_m)
-            ),
-        )
-        .key(
-            "configuration",
-            object! {
-                "middle_m": body.middle_m,
-                "front_m": body.front_m,
-                "back_m": body.back_m,
-                "chi": body.chi,
-                "c_t": c_t,
-                "sphere_radius_m": body.sphere_radius_m,
-            },
-        );
+/// Limits of a robot.
+#[derive(Debug, Serialize)]
+struct LimitsOutput {
+    /// Largest angle of a joint \[rad\].
+    max_angle_rad: f32,
+    /// Largest rate of a joint \[rad/s\].
+    max_rate_rad_s: f32,
+    /// Shortest and longest pulse of a servo \[µs\].
+    pulse_us: [f64; 2],
+    /// Largest number of knots of a table.
+    knots: u16,
 }
 
-/// Adds what came over the link.
-fn add_traffic(answer: &mut Document, counters: &Counters) {
-    let (good, bad) = (counters.frames.ok, counters.frames.bad());
-    answer.row("frames", format!("{good} good, {bad} bad")).key(
-        "counters",
-        object! {
-            "frames_ok": good,
-            "frames_bad": bad,
-            "acted": counters.acted,
-            "replayed": counters.replayed,
-            "superseded": counters.superseded,
-            "stale": counters.stale,
-            "refused": counters.refused,
-            "dropped": counters.dropped,
-            "late_ticks": counters.late_ticks,
-            "clamped": counters.clamped,
-        },
-    );
+/// Lengths and drag of a robot.
+#[derive(Debug, Serialize)]
+struct ConfigurationOutput {
+    /// Length of the middle link \[m\].
+    middle_m: f32,
+    /// Length of the front link \[m\].
+    front_m: f32,
+    /// Length of the back link \[m\].
+    back_m: f32,
+    /// Drag ratio.
+    chi: f32,
+    /// Tangential drag coefficient, as a formula.
+    c_t: String,
+    /// Radius of the sphere \[m\].
+    sphere_radius_m: f32,
+}
+
+/// Counters of a robot.
+#[derive(Debug, Serialize)]
+struct CountersOutput {
+    /// Valid frames.
+    frames_ok: u32,
+    /// Invalid frames.
+    frames_bad: u32,
+    /// Requests that acted.
+    acted: u32,
+    /// Repeated requests, which got the stored reply.
+    replayed: u32,
+    /// Requests older than the last that acted.
+    superseded: u32,
+    /// Frames of another session.
+    stale: u32,
+    /// Requests that were refused.
+    refused: u32,
+    /// Frames dropped because the transmit buffer was full.
+    dropped: u32,
+    /// Ticks that came more than one and a half periods after the previous one.
+    late_ticks: u32,
+    /// Ticks in which the limits changed a pulse.
+    clamped: u32,
+}
+
+impl InfoOutput {
+    /// Output from the robot's replies.
+    fn new(
+        hello: &HelloReply,
+        crash_message: Option<String>,
+        body: &Configuration,
+        table: Option<&TableInfo>,
+        counters: &Counters,
+    ) -> Self {
+        let version = hello.firmware;
+        let commit = String::from_utf8_lossy(&version.commit)
+            .trim_end_matches('\0')
+            .to_owned();
+        let limits = &hello.limits;
+        Self {
+            board: board(hello.board),
+            firmware: format!("{}.{}.{}", version.major, version.minor, version.patch),
+            commit: (!commit.is_empty() && commit != "00000000").then_some(commit),
+            protocol: [hello.protocol_min, hello.protocol_current],
+            schema_key: format!("{:016x}", u64::from_be_bytes(hello.schema_key)),
+            reset_reason: match hello.reset_reason {
+                ResetReason::PowerOn => "power on",
+                ResetReason::Watchdog => "watchdog",
+                ResetReason::Crash => "crash",
+                ResetReason::Pin => "reset pin",
+            },
+            crash_message,
+            session: hello.session,
+            limits: LimitsOutput {
+                max_angle_rad: limits.max_angle,
+                max_rate_rad_s: limits.max_rate,
+                pulse_us: [limits.pulse_min_ns, limits.pulse_max_ns].map(|ns| f64::from(ns) / 1e3),
+                knots: limits.max_knots,
+            },
+            configuration: ConfigurationOutput {
+                middle_m: body.middle_m,
+                front_m: body.front_m,
+                back_m: body.back_m,
+                chi: body.chi,
+                c_t: match body.tangential_drag {
+                    TangentialDrag::LogAspect(value) => format!("2πμ / {value}"),
+                    TangentialDrag::HalfThickness(value) => {
+                        format!("per link, half thickness {value} m")
+                    }
+                    TangentialDrag::OverViscosity(value) => format!("{value} μ"),
+                },
+                sphere_radius_m: body.sphere_radius_m,
+            },
+            gait: table.map(Gait::new),
+            counters: CountersOutput {
+                frames_ok: counters.frames.ok,
+                frames_bad: counters.frames.bad(),
+                acted: counters.acted,
+                replayed: counters.replayed,
+                superseded: counters.superseded,
+                stale: counters.stale,
+                refused: counters.refused,
+                dropped: counters.dropped,
+                late_ticks: counters.late_ticks,
+                clamped: counters.clamped,
+            },
+        }
+    }
+}
+
+impl fmt::Display for InfoOutput {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            limits,
+            configuration: body,
+            counters,
+            ..
+        } = self;
+        let commit = self.commit.as_deref();
+        let commit = commit.map_or(String::new(), |commit| format!(", commit {commit}"));
+        let [lowest, present] = self.protocol.map(VersionName);
+        let mut rows = Rows::default();
+        rows.row("board", self.board)
+            .row(
+                "firmware",
+                format!("{}{commit}, protocol {lowest} to {present}", self.firmware),
+            )
+            .row(
+                "started by",
+                match &self.crash_message {
+                    Some(message) => format!("{}: {message}", self.reset_reason),
+                    None => self.reset_reason.to_owned(),
+                },
+            )
+            .row(
+                "limits",
+                format!(
+                    "{} and {}/s, pulses {} to {} µs, {} knots",
+                    quantity::angle(f64::from(limits.max_angle_rad)),
+                    quantity::angle(f64::from(limits.max_rate_rad_s)),
+                    limits.pulse_us[0],
+                    limits.pulse_us[1],
+                    limits.knots,
+                ),
+            )
+            .row(
+                "links",
+                format!(
+                    "{} / {} / {} mm",
+                    millimetres(body.front_m),
+                    millimetres(body.middle_m),
+                    millimetres(body.back_m)
+                ),
+            )
+            .row(
+                "drag",
+                format!(
+                    "χ = {}, c_t = {}, sphere {} mm",
+                    body.chi,
+                    body.c_t,
+                    millimetres(body.sphere_radius_m)
+                ),
+            )
+            .row("gait", gait_line(self.gait.as_ref()))
+            .row(
+                "frames",
+                format!("{} good, {} bad", counters.frames_ok, counters.frames_bad),
+            );
+        rows.fmt(f)
+    }
 }
 
 fn millimetres(metres: f32) -> f64 {
