@@ -26,9 +26,11 @@ const LOOKS: usize = 4096;
 
 /// One gait that could be measured next. Serialised with the keys of `swimmer calibrate --json`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Candidate {
     /// The gait.
     #[serde(serialize_with = "readable")]
+    #[cfg_attr(feature = "schema", schemars(with = "String"))]
     pub gait: GaitSpec,
     /// Width of the recommended interval of r_s with one run of it more, over the width now.
     #[serde(rename = "sphere_radius_width")]
@@ -46,6 +48,7 @@ fn readable<S: Serializer>(gait: &GaitSpec, serializer: S) -> Result<S::Ok, S::E
 
 /// Gaits by how much one run of each would narrow the recommended intervals. Serialised with the keys of `swimmer calibrate --json`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Advice {
     /// One cycle \[s\], as most runs had it.
     pub period_s: f64,

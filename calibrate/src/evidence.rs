@@ -47,6 +47,7 @@ impl Default for EvidenceOptions {
 
 /// r_s and χ by one way of fitting.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Pair {
     /// r_s \[m\].
     #[serde(rename = "sphere_radius_m")]
@@ -79,6 +80,7 @@ impl std::fmt::Display for Quantity {
 
 /// The estimate of greatest likelihood.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Likelihood {
     /// The estimate, outliers left out.
     #[serde(flatten)]
@@ -95,16 +97,22 @@ pub struct Likelihood {
 
 /// Residual of one quantity of one run at the estimate of greatest likelihood; m or rad.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RunError {
     /// Measured mean.
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub measured: f64,
     /// By the model.
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub predicted: f64,
     /// Standard error of the mean from the run's cycles.
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub within: f64,
     /// The same with what differs from run to run.
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub standard_error: f64,
     /// (Predicted − measured) / standard error.
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub standardised: f64,
 }
 
@@ -121,12 +129,14 @@ impl RunError {
 
 /// A profile likelihood.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Profile {
     /// The parameter (m, or χ) and log-likelihood less its largest value, the other parameter set free.
     pub points: Vec<(f64, f64)>,
     /// Threshold at the ends of the interval: −t²/2 of Student's t.
     pub threshold: f64,
     /// The interval.
+    #[cfg_attr(feature = "schema", schemars(with = "[Option<f64>; 2]"))]
     pub interval: [f64; 2],
     /// `true` if the profile did not fall to the threshold within its range: then that end is no bound.
     pub open: [bool; 2],
@@ -136,6 +146,7 @@ pub struct Profile {
 
 /// The log-likelihood over both parameters, for drawing.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Ridge {
     /// r_s \[m\] of the grid's columns.
     #[serde(rename = "sphere_radius_m")]
@@ -143,6 +154,7 @@ pub struct Ridge {
     /// χ of its rows.
     pub chi: Vec<f64>,
     /// Log-likelihood less its largest value: a row for each χ.
+    #[cfg_attr(feature = "schema", schemars(with = "Vec<Vec<Option<f64>>>"))]
     pub log_ratio: Vec<Vec<f64>>,
     /// Regions of both parameters together.
     pub contours: Vec<Contour>,
@@ -150,6 +162,7 @@ pub struct Ridge {
 
 /// The border of a joint region.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Contour {
     /// Its level.
     pub level: f64,

@@ -26,15 +26,18 @@ pub use side::{SideFollower, SideSighting};
 
 /// A value with its standard error.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Measured {
     /// The value.
     pub value: f64,
     /// Its standard error; NaN if it is unknown.
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub error: f64,
 }
 
 /// Response of a servo: φ follows gain · command(t − lag) + offset, with a play of the dead band either way.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MeasuredServo {
     /// Angle per commanded angle.
     pub gain: Measured,

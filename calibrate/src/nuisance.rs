@@ -115,6 +115,7 @@ impl NuisanceParameter {
 
 /// A parameter with its interval.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FittedParameter {
     /// The parameter.
     pub name: &'static str,
@@ -206,6 +207,7 @@ impl Serialize for NuisanceWarning {
 
 /// r_s, χ and further parameters, by likelihood. Serialised with the keys of `swimmer calibrate --json`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct NuisanceFit {
     /// r_s \[m\], χ, then the others.
     pub parameters: Vec<FittedParameter>,
@@ -221,6 +223,7 @@ pub struct NuisanceFit {
     #[serde(skip)]
     pub swimmer: SwimmerFile,
     /// Warnings.
+    #[cfg_attr(feature = "schema", schemars(with = "Vec<String>"))]
     pub warnings: Vec<NuisanceWarning>,
 }
 

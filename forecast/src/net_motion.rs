@@ -15,6 +15,7 @@ use swimmer_model::Stroke;
 /// # Ok::<(), swimmer_model::InvalidSwimmer>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct NetMotion {
     /// X/L.
     pub displacement_over_length: f64,
@@ -29,8 +30,10 @@ pub struct NetMotion {
     /// Δθ \[rad\].
     pub delta_theta_rad: f64,
     /// Efficiency in the gait's own time parametrisation.
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub efficiency: f64,
     /// At constant power.
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub efficiency_constant_power: f64,
 }
 

@@ -44,6 +44,7 @@ const STEPS: usize = 200;
 
 /// The best timing of a gait under a rate limit.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Timing {
     /// Duration of the cycle \[s\].
     #[serde(rename = "period_s")]
@@ -53,6 +54,7 @@ pub struct Timing {
     pub shortest_period: f64,
     /// The rate limit \[rad/s\]; infinite for none.
     #[serde(rename = "max_rate_rad_s")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub max_rate: f64,
     /// Fastest joint at constant power, without the limit \[rad/s\].
     #[serde(rename = "rate_at_constant_power_rad_s")]

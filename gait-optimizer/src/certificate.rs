@@ -3,7 +3,7 @@
 mod closed_curve;
 mod condition;
 
-use serde::ser::{Serialize, SerializeStruct, Serializer};
+use serde::{Serialize, Serializer};
 
 pub use condition::Condition;
 
@@ -12,12 +12,15 @@ pub(crate) use closed_curve::{
 };
 
 /// Result of one condition.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Check {
     /// Condition.
     #[serde(rename = "name")]
+    #[cfg_attr(feature = "schema", schemars(with = "String"))]
     pub condition: Condition,
-    /// Computed value.
+    /// Computed value; null if it cannot be computed.
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub value: f64,
     /// Limit of the value: an upper limit, or a lower limit if the name of the condition ends in `_least`.
     pub tolerance: f64,
@@ -42,7 +45,9 @@ pub(crate) enum Dependence {
 }
 
 /// Verdict of a certificate.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
 pub enum Verdict {
     /// Every condition holds.
     Pass,
@@ -84,14 +89,41 @@ pub struct Certificate {
     checks: Vec<Check>,
 }
 
-/// JSON form of all outputs: pass, verdict, conditions.
+/// JSON form of a certificate.
+#[derive(Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "Certificate")
+)]
+struct CertificateDocument<'a> {
+    /// Every condition holds.
+    pass: bool,
+    /// Verdict.
+    verdict: Verdict,
+    /// Conditions in order.
+    checks: &'a [Check],
+}
+
 impl Serialize for Certificate {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut fields = serializer.serialize_struct("Certificate", 3)?;
-        fields.serialize_field("pass", &self.pass())?;
-        fields.serialize_field("verdict", self.verdict().word())?;
-        fields.serialize_field("checks", &self.checks)?;
-        fields.end()
+        let document = CertificateDocument {
+            pass: self.pass(),
+            verdict: self.verdict(),
+            checks: &self.checks,
+        };
+        document.serialize(serializer)
+    }
+}
+
+#[cfg(feature = "schema")]
+impl schemars::JsonSchema for Certificate {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        CertificateDocument::schema_name()
+    }
+
+    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        CertificateDocument::json_schema(generator)
     }
 }
 

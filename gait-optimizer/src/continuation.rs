@@ -23,7 +23,6 @@ mod parameter;
 #[cfg(test)]
 mod tests;
 
-use serde::ser::SerializeStruct as _;
 use serde::{Serialize, Serializer};
 use swimmer_files::{ArcKind, Bounds, Objective};
 use swimmer_model::Swimmer;
@@ -120,6 +119,11 @@ pub struct Point {
 
 /// Something that happened on the way.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "ContinuationEvent")
+)]
 pub struct Event {
     /// Index of the start of the branch with this event.
     pub branch: usize,
@@ -134,6 +138,7 @@ pub struct Event {
 
 /// Kinds of event along a branch.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum EventKind {
     /// An arc appeared or vanished.
@@ -203,23 +208,53 @@ pub struct Fold {
     pub exponent: Option<f64>,
 }
 
+/// JSON form of a fold.
+#[derive(Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "Fold")
+)]
+struct FoldDocument {
+    /// The other extremal was found.
+    proven: bool,
+    /// The other extremal, shortly before.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    other_side: Option<OtherSide>,
+    /// Power of the distance to the fold that the gait changed with before; ½ at a fold.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    exponent: Option<f64>,
+}
+
 impl Serialize for Fold {
-    /// Its fields, after whether it is `proven`.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut fold = serializer.serialize_struct("Fold", 3)?;
-        fold.serialize_field("proven", &self.other.is_some())?;
-        if let Some(other) = &self.other {
-            fold.serialize_field("other_side", other)?;
-        }
-        if let Some(exponent) = &self.exponent {
-            fold.serialize_field("exponent", exponent)?;
-        }
-        fold.end()
+        let document = FoldDocument {
+            proven: self.other.is_some(),
+            other_side: self.other,
+            exponent: self.exponent,
+        };
+        document.serialize(serializer)
+    }
+}
+
+#[cfg(feature = "schema")]
+impl schemars::JsonSchema for Fold {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        FoldDocument::schema_name()
+    }
+
+    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        FoldDocument::json_schema(generator)
     }
 }
 
 /// The extremal that a branch meets in a fold: its Jacobian has the other orientation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "FoldOtherSide")
+)]
 pub struct OtherSide {
     /// Parameter value of the fold.
     pub value: f64,

@@ -8,6 +8,7 @@ use swimmer_model::{InvalidSamples, Model, Stroke, Tolerance, crossing_share, sw
 
 /// One arc of a gait.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Arc {
     /// Kind of arc.
     pub kind: ArcKind,

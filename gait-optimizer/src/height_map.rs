@@ -60,6 +60,11 @@ pub enum Row {
 
 /// Change of the frame at the last increase of the order.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "FrameConvergence")
+)]
 pub struct Convergence {
     /// Number of polynomials in each direction, of degrees 0 to `order` − 1.
     pub order: usize,

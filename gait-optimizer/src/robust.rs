@@ -68,6 +68,11 @@ pub enum Over {
 
 /// Values of a gait over the uncertainty: X/L per cycle, signed, ξ as timed, or |d|/(L T) \[1/s\].
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "RobustValues")
+)]
 pub struct Values {
     /// For the estimates themselves.
     pub nominal: f64,

@@ -77,6 +77,11 @@ impl Request {
 
 /// The JSON document of `swimmer atlas`.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "AtlasOutput")
+)]
 #[serde(untagged)]
 pub enum Output {
     /// Optima for displacement or efficiency.
@@ -89,6 +94,11 @@ pub enum Output {
 
 /// Optima for displacement or efficiency.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "OptimaOutput")
+)]
 pub struct AtlasOutput {
     /// Name of the swimmer, for text output.
     #[serde(skip)]
@@ -124,6 +134,7 @@ pub struct AtlasOutput {
 
 /// Gaits that are followed without an atlas.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FollowedOutput {
     /// Name of the swimmer, for text output.
     #[serde(skip)]
@@ -140,8 +151,10 @@ pub struct FollowedOutput {
 
 /// One of the optima.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OptimumOutput {
     /// Lighthill efficiency ξ at constant power.
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub efficiency: f64,
     /// Displacement along the heading at the first sample, over the total length.
     pub displacement_over_length: f64,
@@ -188,6 +201,7 @@ pub struct OptimumOutput {
 
 /// A gait as fast as servos of the given rates play it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Pace {
     /// Shortest period \[s\].
     pub period_s: f64,

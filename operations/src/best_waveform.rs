@@ -45,6 +45,11 @@ pub enum RequestedSpring {
 
 /// Best waveform. The JSON document of `swimmer optimize passive`.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "PassiveOutput")
+)]
 pub struct Output {
     /// Name of the swimmer, for text output.
     #[serde(skip)]
@@ -77,6 +82,11 @@ pub struct Output {
 
 /// One cycle.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "WaveformCycle")
+)]
 pub struct Cycle {
     /// Displacement over the total length.
     pub displacement_over_length: f64,
@@ -108,6 +118,7 @@ pub struct Cycle {
 
 /// Harmonic of a waveform.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct WaveformHarmonic {
     /// Order.
     pub order: usize,
@@ -119,6 +130,11 @@ pub struct WaveformHarmonic {
 
 /// Optimality conditions of the logarithm of the objective, in the coefficients \[rad\].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "WaveformConditions")
+)]
 pub struct Conditions {
     /// Largest component of the gradient of the Lagrangian.
     pub stationarity: f64,

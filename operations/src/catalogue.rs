@@ -24,6 +24,7 @@ const OPTIONAL: &str = "
 
 /// All presets. The JSON document of `swimmer swimmers`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SwimmersOutput {
     /// The presets.
     pub swimmers: Vec<PresetOutput>,
@@ -31,6 +32,7 @@ pub struct SwimmersOutput {
 
 /// A preset.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PresetOutput {
     /// Name.
     pub name: &'static str,
@@ -46,6 +48,11 @@ pub struct PresetOutput {
 
 /// A preset as a file to start from. The JSON document of `swimmer swimmers NAME`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "PresetFileOutput")
+)]
 pub struct SwimmerOutput {
     /// Name.
     pub name: String,
@@ -55,6 +62,7 @@ pub struct SwimmerOutput {
 
 /// Forms of gaits. The JSON document of `swimmer gaits`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct GaitsOutput {
     /// The forms.
     pub gaits: Vec<GaitFormOutput>,
@@ -62,6 +70,7 @@ pub struct GaitsOutput {
 
 /// A form of gaits.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct GaitFormOutput {
     /// Example.
     pub form: &'static str,

@@ -20,6 +20,11 @@ pub struct Options {
 
 /// A certificate. The JSON document of `swimmer certify`.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "CertifyOutput")
+)]
 pub struct Output {
     /// Objective of the certificate, for text output.
     #[serde(skip)]

@@ -13,6 +13,7 @@ const LARGEST_REYNOLDS: f64 = 0.1;
 
 /// Load of one cycle in the fluid, as the gait is parametrised.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FluidLoad {
     /// Duration of the cycle \[s\].
     pub period_s: f64,

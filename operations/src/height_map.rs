@@ -10,6 +10,7 @@ use crate::Error;
 
 /// A component of the displacement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Component {
     /// Along the swimmer, over L.
@@ -42,6 +43,7 @@ pub struct NamedGait {
 
 /// Area rule of one gait: x and y over L, θ in radians.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct GaitArea {
     /// Name of the gait.
     pub gait: String,
@@ -66,6 +68,11 @@ impl GaitArea {
 
 /// One component of the height function. The JSON document of `swimmer height-map`.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "HeightMapOutput")
+)]
 pub struct Output {
     /// Component.
     pub row: Component,

@@ -78,6 +78,11 @@ impl TryFrom<Value> for Request {
 
 /// Best gait of an objective.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "OptimizeOutput")
+)]
 #[serde(untagged)]
 pub enum Output {
     /// Most displacement per cycle.
@@ -123,6 +128,7 @@ pub fn run(request: &Request, context: &mut Context) -> Result<Output, Error> {
 
 /// Gait of an output: certificate, timing, file.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct GaitOutput {
     /// Share of the cycle in which links cross.
     pub links_cross: f64,
@@ -162,6 +168,7 @@ impl GaitOutput {
 
 /// Displacement and arcs of a gait with the paper's symmetries, from its first quarter.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Quarter {
     /// Displacement per cycle over the total length, with its sign.
     pub displacement_over_length: f64,
@@ -193,6 +200,7 @@ impl Quarter {
 
 /// Numerical quality of an efficiency gait.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct EfficiencyFigures {
     /// Largest residual: of the shooting conditions, or of the gradient of ln ξ for a robust gait.
     pub residual: Option<f64>,

@@ -63,6 +63,11 @@ pub struct Target {
 
 /// The quickest plan found. The JSON document of `swimmer plan`.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "PlanOutput")
+)]
 pub struct Output {
     /// Name of the swimmer, for text output.
     #[serde(skip)]
@@ -94,6 +99,11 @@ pub struct Output {
 
 /// Cycles of one gait.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "PlanStepOutput")
+)]
 pub struct StepOutput {
     /// Gait: forward, backward, left, right, turn-left or turn-right, or the name of its file next to the playlist.
     pub gait: String,
@@ -110,6 +120,7 @@ pub struct StepOutput {
 
 /// End pose of a plan.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ReachedPose {
     /// Along the tank \[m\].
     pub x_m: f64,
@@ -121,6 +132,11 @@ pub struct ReachedPose {
 
 /// Deviation from a pose.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "PoseDeviation")
+)]
 pub struct Deviation {
     /// Distance \[m\].
     pub distance_m: f64,

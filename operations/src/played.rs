@@ -7,6 +7,7 @@ use crate::text::degrees;
 
 /// Forecast of a played cycle.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PlayedCycle {
     /// Duration of the cycle \[s\].
     pub period_s: f64,
@@ -52,6 +53,7 @@ pub struct PlayedCycle {
 
 /// Displacement lost to one imperfection.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PlayedLoss {
     /// Name of the imperfection.
     pub by: &'static str,
@@ -65,6 +67,7 @@ pub struct PlayedLoss {
 
 /// Largest joint angle of a cycle.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Reach {
     /// Phase, from 0 to 1.
     pub u: f64,

@@ -105,6 +105,7 @@ pub fn servo_rates(rates: &[f64], playable: bool, file: &SwimmerFile) -> Option<
 
 /// A gait as fast as the robot of the file plays it.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PlayedSpeed {
     /// Period of the gait, or the shortest that the robot allows for its table, to the next millisecond \[s\].
     pub period_s: f64,

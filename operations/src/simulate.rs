@@ -51,6 +51,11 @@ impl Default for Options {
 
 /// One cycle. The JSON document of `swimmer simulate`.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "SimulateOutput")
+)]
 pub struct Output {
     /// Share of the cycle in which links cross, for text output.
     #[serde(skip)]

@@ -44,6 +44,11 @@ pub enum Objective {
 
 /// Kind of an arc of an optimal gait.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename_all = "lowercase")
+)]
 pub enum ArcKind {
     /// Free, with the control from `Ḧ_u = 0` (paper, `u₂* = −(A/B) u₁*`).
     Singular,

@@ -9,6 +9,7 @@ use crate::least_squares::Model as _;
 
 /// One line of the budget.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct BudgetLine {
     /// Name of the assumption.
     pub name: &'static str,

@@ -13,6 +13,7 @@ use crate::{CampaignFit, Intervals};
 
 /// Assessment of a fit: the verdict and its reasons.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct AssessmentDocument {
     /// `trust`, `caution` or `do not use`.
     pub verdict: &'static str,
@@ -40,6 +41,7 @@ pub struct AssessmentDocument {
 
 /// The answer that is recommended.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct HeadlinePart {
     /// `paper` or `systematics`.
     pub by: &'static str,
@@ -50,6 +52,7 @@ pub struct HeadlinePart {
 
 /// Goodness of fit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct GoodnessPart {
     /// Values less parameters.
     pub freedom: usize,
@@ -70,6 +73,7 @@ pub struct GoodnessPart {
 
 /// Runs that repeat a gait.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RepeatsPart {
     /// Their files.
     pub files: Vec<String>,
@@ -80,6 +84,7 @@ pub struct RepeatsPart {
 
 /// Fit of one run by itself.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RunPart {
     /// Its file.
     pub file: String,
@@ -90,6 +95,7 @@ pub struct RunPart {
 
 /// The estimate with systematic errors.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SystematicsPart {
     /// r_s \[m\] and χ.
     #[serde(flatten)]
@@ -104,6 +110,7 @@ pub struct SystematicsPart {
 
 /// A value that was left out.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OutlierPart {
     /// The run's file.
     pub file: String,
@@ -113,6 +120,7 @@ pub struct OutlierPart {
 
 /// A run that was not fitted.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ExcludedPart {
     /// Its file.
     pub file: String,

@@ -67,6 +67,7 @@ const WORTH_WHILE: f64 = 2.0;
 
 /// One parameter of an explanation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Explained {
     /// Its name.
     pub name: &'static str,
@@ -80,6 +81,7 @@ pub struct Explained {
 
 /// Something that may be off.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Explanation {
     /// Name.
     pub name: &'static str,

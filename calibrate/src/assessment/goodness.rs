@@ -14,6 +14,7 @@ use swimmer_model::Gait as _;
 
 /// Signs of the residuals of one quantity, from the smallest gait to the largest.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SignTest {
     /// X, ΔY or Δθ.
     pub quantity: &'static str,
@@ -27,16 +28,22 @@ pub struct SignTest {
 
 /// Fit of one run by itself.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RunGoodness {
     /// Y over X, and its standard error from the run's cycles; 0 for a symmetric gait.
+    #[cfg_attr(feature = "schema", schemars(with = "[Option<f64>; 2]"))]
     pub y_over_x: [f64; 2],
     /// Probability of a Y as far from the model's or farther; the model has the servos of the swimmer file (Student's t).
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub y_chance: f64,
     /// Net turn of a cycle \[rad\], and its standard error from the run's cycles; 0 for a symmetric gait.
+    #[cfg_attr(feature = "schema", schemars(with = "[Option<f64>; 2]"))]
     pub turn_rad: [f64; 2],
     /// Probability of a turn as far from the model's or farther.
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub turn_chance: f64,
     /// Velocity along and across the heading that would explain X and Y beyond the model \[m/s\].
+    #[cfg_attr(feature = "schema", schemars(with = "[Option<f64>; 2]"))]
     pub drift_m_per_s: [f64; 2],
     /// Ratio of lengths to those predicted from the other runs, and its standard error: a wall reduces it.
     pub scale: Option<[f64; 2]>,
@@ -63,6 +70,7 @@ pub struct Goodness {
 
 /// Deviations from run to run that neither scatter nor systematic errors explain.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Misfit {
     /// `ΔY` or `Δθ`.
     pub quantity: &'static str,
@@ -74,6 +82,7 @@ pub struct Misfit {
 
 /// A mean over the runs of what the model leaves, tested against their own scatter.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CommonDeviation {
     /// `Y/X` or `net turn`.
     pub quantity: &'static str,

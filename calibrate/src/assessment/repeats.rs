@@ -10,6 +10,7 @@ use crate::quantities::{QUANTITIES, TELLING};
 
 /// Runs of one gait at one pace.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Repeats {
     /// The gait as the first of them names it.
     pub gait: String,

@@ -41,6 +41,7 @@ const LEAST_SAID: f64 = 0.02;
 
 /// Estimate of a parameter with a prior.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Nuisance {
     /// Its name.
     pub name: &'static str,
@@ -58,6 +59,7 @@ pub struct Nuisance {
 
 /// Error without a prior that the runs require.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Unforeseen {
     /// Its name.
     pub name: &'static str,

@@ -7,70 +7,125 @@ use crate::fit::Intervals;
 
 /// All that is known beyond the fit, with runs by the names of their files; its keys are those of `evidence.json`.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct EvidenceDocument<'a> {
+    /// Estimate of greatest likelihood.
     likelihood: LikelihoodPart<'a>,
+    /// Residuals, run by run.
     run_errors: Vec<RunErrors<'a>>,
+    /// Profile likelihoods.
     profiles: Profiles<'a>,
+    /// Likelihood over both parameters.
     ridge: &'a Ridge,
+    /// Bootstrap of the fit with the paper's weights; null for fewer than five runs.
     bootstrap: Option<Bootstrap<'a>>,
+    /// Fits without one run.
     without_run: Vec<Without<'a>>,
+    /// Values that the likelihood leaves out.
     outliers: Vec<OutlierPart<'a>>,
+    /// Error of the polynomials through the model's values, as a share of the largest X, ΔY, Δθ.
     surface_error: f64,
 }
 
+/// Estimate of greatest likelihood.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct LikelihoodPart<'a> {
+    /// r_s \[m\] and χ.
     estimate: &'a Pair,
+    /// Ends of the profile likelihoods.
     intervals: &'a Intervals,
+    /// Standard deviations from run to run, beyond what cycles explain.
     between_runs: BetweenRuns,
+    /// Correlation of r_s and ln χ.
     correlation: f64,
 }
 
 /// Standard deviations from run to run.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct BetweenRuns {
+    /// Displacement \[m\].
     x_m: f64,
+    /// Sway \[m\].
     delta_y_m: f64,
+    /// Oscillation of the heading \[rad\].
     delta_theta_rad: f64,
 }
 
+/// Residuals of one run.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct RunErrors<'a> {
+    /// File of the run.
     file: &'a str,
+    /// Displacement \[m\].
     x_m: &'a RunError,
+    /// Sway \[m\].
     delta_y_m: &'a RunError,
+    /// Oscillation of the heading \[rad\].
     delta_theta_rad: &'a RunError,
 }
 
+/// Profile likelihoods.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct Profiles<'a> {
+    /// Radius of the sphere \[m\].
     sphere_radius_m: &'a Profile,
+    /// Drag ratio.
     chi: &'a Profile,
 }
 
+/// Bootstrap by runs and cycles.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct Bootstrap<'a> {
+    /// Seed of the draws.
     seed: u64,
+    /// Number of draws.
     draws: usize,
     /// Whole runs are drawn, not only cycles.
     runs_drawn: bool,
+    /// Number of draws whose fit ended at the border of the search.
     at_border: usize,
+    /// Bias-corrected and accelerated intervals.
     intervals: &'a Intervals,
 }
 
+/// Both fits without one run.
 #[derive(Debug, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "WithoutRun")
+)]
 struct Without<'a> {
+    /// File of the run.
     file: &'a str,
+    /// Fit with the paper's weights.
     paper: &'a Pair,
+    /// Estimate of greatest likelihood; null if it has none.
     likelihood: Option<&'a Pair>,
 }
 
+/// Value that stands out.
 #[derive(Debug, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "EvidenceOutlier")
+)]
 struct OutlierPart<'a> {
+    /// File of the run.
     file: &'a str,
+    /// X, ΔY or Δθ.
     quantity: String,
+    /// Measured less what all others predict \[m or rad\].
     deviation: f64,
+    /// The same in standard errors of that difference.
     standard_errors: f64,
+    /// Chance that any value of a faultless campaign stands out so far.
     chance: f64,
 }
 

@@ -9,6 +9,7 @@ use crate::student;
 
 /// Intervals of both parameters.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Intervals {
     /// r_s \[m\], from and to; never below 0.
     #[serde(rename = "sphere_radius_m")]

@@ -74,6 +74,7 @@ impl FollowReport {
 
 /// Rows one after another in which something held.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Stretch {
     /// The first of them \[s\].
     pub from_s: f64,

@@ -8,15 +8,23 @@ use super::{PointKind, TrackFile, TrackFormat, TrackWarning, Unit};
 
 /// Summary of a tracking file, under the keys of the JSON output.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "TracksOutput")
+)]
 pub struct TrackSurvey {
     /// Its format.
     #[serde(serialize_with = "in_words")]
+    #[cfg_attr(feature = "schema", schemars(with = "String"))]
     pub format: TrackFormat,
     /// Rows a second, as in [`TrackFile::rate_hz`]; null in JSON if there is a single frame without a rate.
     #[serde(serialize_with = "where_known")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub rate_hz: f64,
     /// The unit of length in the file.
     #[serde(serialize_with = "in_words")]
+    #[cfg_attr(feature = "schema", schemars(with = "String"))]
     pub unit: Unit,
     /// Rows with data.
     pub frames: usize,
@@ -24,16 +32,19 @@ pub struct TrackSurvey {
     pub points: Vec<PointPresence>,
     /// Irregularities that the reader noticed.
     #[serde(serialize_with = "each_in_words")]
+    #[cfg_attr(feature = "schema", schemars(with = "Vec<String>"))]
     pub warnings: Vec<TrackWarning>,
 }
 
 /// A point, and in which rows it is.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PointPresence {
     /// Its name, as in the file.
     pub name: String,
     /// Type.
     #[serde(serialize_with = "in_words")]
+    #[cfg_attr(feature = "schema", schemars(with = "String"))]
     pub kind: PointKind,
     /// Its ID in the file; empty where the file has none.
     pub id: String,

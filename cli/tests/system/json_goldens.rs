@@ -10,28 +10,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::binary::typed;
 
-/// Commands that run one after the other in a folder of their own.
-struct Session {
-    /// Folder of the documents under `tests/golden/json`.
-    name: &'static str,
-    /// Folder whose files the session starts with, relative to this crate.
-    files: Option<&'static str>,
-    commands: &'static [Command],
-}
-
-/// A command whose document is kept.
-struct Command {
-    /// Name of the document's file, without its ending.
-    document: &'static str,
-    /// Exit status.
-    status: i32,
-    /// Words after `swimmer`.
-    words: &'static str,
-    /// Keys of times that this run took, in addition to [`FILTERED`].
-    times: &'static [&'static str],
-}
-
 mod table;
+
+use table::{Command, Session};
 
 /// Numbers may differ by this share of the larger one. The C library has other sines on processors without fused
 /// multiplication and addition: `GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA` runs these tests as such a processor does.

@@ -11,6 +11,7 @@ use crate::certificate::to_side;
 
 /// One connected zero-level curve, possibly through points where it crosses another.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LevelCurve {
     /// `true` if the curve is closed; both ends of an open curve are on the edge of the square.
     pub closed: bool,
@@ -18,6 +19,7 @@ pub struct LevelCurve {
     pub residual: f64,
     /// Vertices Φ \[rad\] in order; the last repeats the first if the curve is closed.
     #[serde(rename = "vertices", serialize_with = "pairs")]
+    #[cfg_attr(feature = "schema", schemars(with = "Vec<[f64; 2]>"))]
     pub points: Vec<Vector2<f64>>,
 }
 

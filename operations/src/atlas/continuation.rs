@@ -52,6 +52,11 @@ pub fn parameter_of_word(word: &str) -> Option<Parameter> {
 
 /// Followed gaits, and the events on their way.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "ContinuationOutput")
+)]
 pub struct Output {
     /// Name of the parameter.
     pub parameter: &'static str,
@@ -67,12 +72,14 @@ pub struct Output {
 
 /// Gait at one value of the parameter.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PointOutput {
     /// Number of the gait that is followed, from 0.
     pub branch: usize,
     /// Value of the parameter.
     pub value: f64,
     /// Lighthill efficiency ξ.
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub efficiency: f64,
     /// Displacement along the heading at the first sample, over the total length.
     pub displacement_over_length: f64,

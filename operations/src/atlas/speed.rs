@@ -12,6 +12,11 @@ use crate::{Context, Error};
 
 /// Optima for speed.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "FastestOptimaOutput")
+)]
 pub struct Output {
     /// Name of the swimmer, for text output.
     #[serde(skip)]
@@ -37,6 +42,7 @@ pub struct Output {
 
 /// One of the optima.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FastestOutput {
     /// Displacement over the period, over the total length \[1/s\].
     pub speed_over_length_per_s: f64,

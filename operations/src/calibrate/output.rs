@@ -15,6 +15,7 @@ use super::doubts;
 
 /// The cycles of one run and their means. The deviation of a single cycle is NaN, in JSON null.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RunOutput {
     /// File of the track, relative to the campaign.
     pub file: String,
@@ -25,18 +26,23 @@ pub struct RunOutput {
     /// Mean displacement along the heading per cycle \[m\].
     pub x_m: f64,
     /// Standard deviation of the displacement \[m\].
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub x_sd_m: f64,
     /// Mean displacement across the heading per cycle \[m\].
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub y_m: f64,
     /// Mean lateral sway within a cycle \[m\].
     pub delta_y_m: f64,
     /// Standard deviation of the sway \[m\].
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub delta_y_sd_m: f64,
     /// Mean oscillation of the heading within a cycle \[rad\].
     pub delta_theta_rad: f64,
     /// Standard deviation of the oscillation \[rad\].
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub delta_theta_sd_rad: f64,
     /// Mean net rotation per cycle \[rad\].
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub turn_rad: f64,
     /// Mean period \[s\].
     pub period_s: f64,
@@ -67,35 +73,49 @@ pub struct RunOutput {
 
 /// Standard deviations, standard errors and lag-1 correlations of a run's cycles, except for those in [`RunOutput`].
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Spreads {
     /// Standard error of the displacement \[m\].
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub x_se_m: f64,
     /// Correlation of successive displacements.
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub x_lag1: f64,
     /// Standard deviation of the displacement across the heading \[m\].
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub y_sd_m: f64,
     /// Its standard error \[m\].
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub y_se_m: f64,
     /// Its correlation from cycle to cycle.
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub y_lag1: f64,
     /// Standard error of the sway \[m\].
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub delta_y_se_m: f64,
     /// Correlation of successive sways.
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub delta_y_lag1: f64,
     /// Standard error of the oscillation of the heading \[rad\].
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub delta_theta_se_rad: f64,
     /// Its correlation from cycle to cycle.
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub delta_theta_lag1: f64,
     /// Standard deviation of the net rotation \[rad\].
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub turn_sd_rad: f64,
     /// Its standard error \[rad\].
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub turn_se_rad: f64,
     /// Its correlation from cycle to cycle.
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub turn_lag1: f64,
 }
 
 /// A whole cycle that does not count.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LeftOutOutput {
     /// Start \[s\].
     pub start_s: f64,
@@ -105,6 +125,7 @@ pub struct LeftOutOutput {
 
 /// Counts of a track's frames by their use.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Samples {
     /// All frames.
     pub frames: usize,
@@ -120,6 +141,11 @@ pub struct Samples {
 
 /// The cycles of all runs, and the parameters that explain them. The JSON document of `swimmer calibrate` for a campaign.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "CalibrateOutput")
+)]
 pub struct Output {
     /// Fitted runs.
     pub runs: Vec<RunOutput>,
@@ -156,6 +182,7 @@ pub struct Output {
 
 /// The cycles of a single run. The JSON document of `swimmer calibrate` for a tracking file.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RunsOutput {
     /// The run.
     pub runs: Vec<RunOutput>,
@@ -165,6 +192,7 @@ pub struct RunsOutput {
 
 /// Servos of one run, or the mean of all runs.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct JointsOutput {
     /// Front servo.
     pub front: MeasuredServo,
@@ -174,6 +202,7 @@ pub struct JointsOutput {
 
 /// Joint angles of one run.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RunJoints {
     /// Share of the samples of valid cycles in which each angle was seen.
     pub seen: [f64; 2],

@@ -13,6 +13,7 @@ pub const STARTS: usize = 48;
 
 /// Displacement and arcs of the best certified gait of the closed-curve search.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ClosedCurve {
     /// Displacement along the heading at the first sample, over the total length.
     pub displacement_over_length: f64,

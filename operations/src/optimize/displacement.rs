@@ -45,6 +45,11 @@ pub struct Request {
 
 /// The gait. The JSON document of `swimmer optimize displacement`.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "DisplacementOutput")
+)]
 #[serde(untagged)]
 pub enum Output {
     /// A gait with the paper's symmetries.
@@ -57,6 +62,11 @@ pub enum Output {
 
 /// A gait with the paper's symmetries.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "SymmetricDisplacementOutput")
+)]
 pub struct Symmetric {
     /// Name of the swimmer, for text output.
     #[serde(skip)]
@@ -77,6 +87,11 @@ pub struct Symmetric {
 
 /// A gait of a swimmer whose side links differ.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "ClosedDisplacementOutput")
+)]
 pub struct Closed {
     /// Name of the swimmer, for text output.
     #[serde(skip)]

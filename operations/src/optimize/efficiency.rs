@@ -72,6 +72,11 @@ pub struct Request {
 
 /// The gait. The JSON document of `swimmer optimize efficiency`.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "EfficiencyOutput")
+)]
 #[serde(untagged)]
 pub enum Output {
     /// A gait with the paper's symmetries.
@@ -84,6 +89,11 @@ pub enum Output {
 
 /// A gait with the paper's symmetries.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "SymmetricEfficiencyOutput")
+)]
 pub struct Symmetric {
     /// Name of the swimmer, for text output.
     #[serde(skip)]
@@ -106,6 +116,11 @@ pub struct Symmetric {
 
 /// A gait of a swimmer whose side links differ.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "ClosedEfficiencyOutput")
+)]
 pub struct Closed {
     /// Name of the swimmer, for text output.
     #[serde(skip)]

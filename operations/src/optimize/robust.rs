@@ -20,6 +20,7 @@ const INSTANTS: u32 = 1024;
 
 /// Statistic that a robust design maximises.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Statistic {
     /// The worst case over the intervals.
@@ -81,6 +82,11 @@ impl Request {
 
 /// A robust gait with the paper's symmetries. The JSON document of `swimmer optimize … --robust`.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "RobustOutput")
+)]
 pub struct Output {
     /// Name of the swimmer, for text output.
     #[serde(skip)]
@@ -89,6 +95,7 @@ pub struct Output {
     #[serde(skip)]
     pub objective: Objective,
     /// Efficiency of the estimated swimmer.
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub efficiency: f64,
     /// Displacement and arcs.
     #[serde(flatten)]
@@ -106,6 +113,7 @@ pub struct Output {
 
 /// Cost and benefit of robustness.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RobustnessOutput {
     /// Statistic that was maximised.
     pub over: Statistic,
@@ -131,6 +139,7 @@ pub struct RobustnessOutput {
 
 /// Swimmer that holds the worst case.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MemberOutput {
     /// Radius of the sphere \[m\].
     pub sphere_radius_m: f64,

@@ -55,6 +55,11 @@ pub struct Request {
 
 /// The gait. The JSON document of `swimmer optimize speed`.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "SpeedOutput")
+)]
 pub struct Output {
     /// Name of the swimmer, for text output.
     #[serde(skip)]
@@ -118,6 +123,7 @@ pub struct Output {
 
 /// File of the farthest gaits in shorter and longer periods.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FrontOutput {
     /// Path.
     pub file: PathBuf,

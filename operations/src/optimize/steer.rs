@@ -60,6 +60,11 @@ impl Options {
 
 /// The six gaits. The JSON document of `swimmer optimize steer`.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "SteerOutput")
+)]
 pub struct Output {
     /// Name of the swimmer, for text output.
     #[serde(skip)]
@@ -77,6 +82,7 @@ pub struct Output {
 
 /// One of the six gaits.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct JoinedOutput {
     /// Name.
     pub name: &'static str,

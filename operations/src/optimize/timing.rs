@@ -19,6 +19,7 @@ pub struct Request {
 
 /// A gait's timing under the limit.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct GaitTiming {
     /// The timing.
     #[serde(flatten)]

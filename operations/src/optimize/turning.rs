@@ -20,6 +20,11 @@ pub struct Request {
 
 /// The gait. The JSON document of `swimmer optimize turning`.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "TurningOutput")
+)]
 pub struct Output {
     /// Name of the swimmer, for text output.
     #[serde(skip)]

@@ -1,6 +1,25 @@
 //! Table of the commands whose documents are kept.
 
-use super::{Command, Session};
+/// Commands that run one after the other in a folder of their own.
+pub(crate) struct Session {
+    /// Folder of the documents under `tests/golden/json`.
+    pub(crate) name: &'static str,
+    /// Folder whose files the session starts with, relative to this crate.
+    pub(crate) files: Option<&'static str>,
+    pub(crate) commands: &'static [Command],
+}
+
+/// A command whose document is kept.
+pub(crate) struct Command {
+    /// Name of the document's file, without its ending.
+    pub(crate) document: &'static str,
+    /// Exit status.
+    pub(crate) status: i32,
+    /// Words after `swimmer`.
+    pub(crate) words: &'static str,
+    /// Keys of times that this run took, in addition to those that are always filtered.
+    pub(crate) times: &'static [&'static str],
+}
 
 /// A session without files.
 const fn bare(name: &'static str, commands: &'static [Command]) -> Session {

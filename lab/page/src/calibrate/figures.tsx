@@ -1,7 +1,8 @@
 // Figures of a calibration: results over the amplitude, profiles, ridge of r_s and χ, influence of single runs, paths of the swimmer.
 
 import { useMemo } from "preact/hooks";
-import type { CurvePoint, EvidenceOutput, Pair, Profile as ProfileOutput, Run } from "./outputs.ts";
+import type { Pair, Profile as ProfileOutput } from "../contracts.ts";
+import type { CurvePoint, EvidenceOutput, Run } from "./outputs.ts";
 import { Chart, degrees, Dots, HEIGHT, line, MARGIN, scale, type Scale, WIDTH } from "./chart.tsx";
 
 /** Name of a file without its folders. */

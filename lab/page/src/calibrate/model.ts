@@ -2,16 +2,17 @@
 
 import { signal } from "@preact/signals";
 import { Lab, Latest } from "../wasm/lab.ts";
-import { type AdviceOutput, type AssessmentOutput, type EvidenceOutput, type FitOutput, type FitReply, type Holdings, type NuisanceOutput, withFigures } from "./outputs.ts";
+import type { Advice, AssessmentDocument, TracksOutput } from "../contracts.ts";
+import { type EvidenceOutput, type FitOutput, type FitReply, type NuisanceOutput, withFigures } from "./outputs.ts";
 import { sample } from "./sample.ts";
 
 const lab = new Lab("robot");
 
-export const tracks = signal<readonly { name: string; holds: Holdings }[]>([]);
+export const tracks = signal<readonly { name: string; holds: TracksOutput }[]>([]);
 export const fit = signal<FitOutput | null>(null);
 export const evidence = signal<EvidenceOutput | null>(null);
-export const assessment = signal<AssessmentOutput | null>(null);
-export const advice = signal<AdviceOutput | null>(null);
+export const assessment = signal<AssessmentDocument | null>(null);
+export const advice = signal<Advice | null>(null);
 /** Selected words of `--fit-also`, and the result: a fit or an error message. */
 export const also = signal<readonly string[]>([]);
 export const further = signal<NuisanceOutput | null>(null);
@@ -137,7 +138,7 @@ async function survey(come: ReadonlySet<string>): Promise<string[]> {
     tracks.value = tracks.value.filter((track) => track.name !== name);
     begin(`reading ${name}`);
     try {
-      const holds = await lab.json<Holdings>("tracks", packed([[name, bytes]]));
+      const holds = await lab.json<TracksOutput>("tracks", packed([[name, bytes]]));
       tracks.value = [...tracks.value, { name, holds }];
     } catch (error) {
       if (reason(error) === STOPPED) throw error;
@@ -164,7 +165,7 @@ async function calibrate(): Promise<void> {
     fit.value = { ...fitted, warnings: [...fitted.warnings, `no estimate by likelihood: ${reason(error)}`] };
   }
   begin("assessing the fit");
-  assessment.value = await lab.json<AssessmentOutput>("calibrate assessment", { number });
+  assessment.value = await lab.json<AssessmentDocument>("calibrate assessment", { number });
   begin("weighing what to measure next");
-  advice.value = await lab.json<AdviceOutput>("calibrate advice", { number });
+  advice.value = await lab.json<Advice>("calibrate advice", { number });
 }

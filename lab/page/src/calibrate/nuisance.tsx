@@ -2,7 +2,7 @@
 
 import { figure } from "../explore/names.ts";
 import { download } from "../files/download.ts";
-import type { AdviceOutput } from "./outputs.ts";
+import type { Advice as AdviceOutput } from "../contracts.ts";
 import { degrees } from "./chart.tsx";
 import { also, choose, further, noFurther } from "./model.ts";
 import { Head, Table } from "./tables.tsx";

@@ -2,7 +2,8 @@
 
 import type { ComponentChildren } from "preact";
 import { figure } from "../explore/names.ts";
-import type { AssessmentOutput, EvidenceOutput, FitOutput, Intervals, Measured, Pair, Run } from "./outputs.ts";
+import type { AssessmentDocument, Intervals, Measured, Pair } from "../contracts.ts";
+import type { EvidenceOutput, FitOutput, Run } from "./outputs.ts";
 import { degrees } from "./chart.tsx";
 import { named, short } from "./figures.tsx";
 
@@ -33,7 +34,7 @@ interface Way {
 }
 
 /** Both parameters, one line per method of fitting. */
-export function Parameters({ fit, evidence, assessment }: { fit: FitOutput; evidence: EvidenceOutput | null; assessment: AssessmentOutput | null }) {
+export function Parameters({ fit, evidence, assessment }: { fit: FitOutput; evidence: EvidenceOutput | null; assessment: AssessmentDocument | null }) {
   const likelihood = evidence?.likelihood;
   const wider = assessment ? assessment.systematics ?? null : undefined;
   const bootstrap = evidence ? evidence.bootstrap : undefined;
@@ -77,7 +78,7 @@ export function Parameters({ fit, evidence, assessment }: { fit: FitOutput; evid
 const chanceOf = (value: number | null) => (value === null ? "–" : value < 1e-3 ? "< 0.001" : value.toFixed(3));
 
 /** Goodness of fit: statistics of each run, and the signs of the residuals. */
-export function Goodness({ assessed: { goodness, reduced_chi2 } }: { assessed: AssessmentOutput }) {
+export function Goodness({ assessed: { goodness, reduced_chi2 } }: { assessed: AssessmentDocument }) {
   const withError = ([value, error]: [number | null, number | null], unit: number, digits: number) =>
     value === null ? "–" : `${figure(value * unit, digits)}${error === null ? "" : ` ± ${(error * unit).toFixed(digits)}`}`;
   const chi2 = (value: number | null) => (value === null ? "–" : value.toPrecision(3));
@@ -106,7 +107,7 @@ export function Goodness({ assessed: { goodness, reduced_chi2 } }: { assessed: A
 }
 
 /** Error budget of both parameters, and alternative explanations of the runs. */
-export function Budget({ assessed }: { assessed: AssessmentOutput }) {
+export function Budget({ assessed }: { assessed: AssessmentDocument }) {
   if (assessed.budget.length === 0) return null;
   const amount = (by: number, unit: string) => `${Number(by.toPrecision(2))}${unit ? ` ${unit}` : ""}`;
   return (
@@ -134,7 +135,7 @@ export function Budget({ assessed }: { assessed: AssessmentOutput }) {
 }
 
 /** Nuisance parameters: prior and fitted values. */
-export function Known({ assessed }: { assessed: AssessmentOutput }) {
+export function Known({ assessed }: { assessed: AssessmentDocument }) {
   if (!assessed.systematics || assessed.systematics.parameters.length === 0) return null;
   const amount = ([value, deviation]: [number, number], unit: string) => {
     const [per, name, digits] = unit === "m" ? [1000, " mm", 2] : unit === "rad" ? [degrees(1), "°", 2] : unit === "s" ? [1000, " ms", 0] : [1, "", 4];

@@ -4,7 +4,7 @@ import { activeGait, CIRCLE, edit, editGait, type Gait, OPTIMA, type Optimum, sh
 import { FEWEST, withPoints } from "./handles.tsx";
 import { curveOf, forgetStopped, isCurrent, optima, searching, STOPPED, stopSearch } from "./model.ts";
 import { angle, figure, NAMES } from "./names.ts";
-import type { OptimizeOutput } from "./outputs.ts";
+import type { OptimizeReply } from "./outputs.ts";
 import { symmetrised } from "./spline.ts";
 import { path } from "./map.tsx";
 import shapes from "./thumbnails.json";
@@ -145,7 +145,7 @@ function Searching({ seconds }: { seconds: number }) {
   );
 }
 
-function brief(what: Optimum, result: OptimizeOutput): string {
+function brief(what: Optimum, result: OptimizeReply): string {
   const mark = result.certificate.pass ? "✓ " : "";
   if (what === "turning") return `${mark}θ ${angle(result.rotation_rad ?? 0)}`;
   if (what === "sideways") return `${mark}Y/L ${figure(result.lateral_over_length ?? 0, 4)}`;

@@ -2,7 +2,8 @@
 
 import { batch, computed, effect, signal } from "@preact/signals";
 import { Lab, Latest } from "../wasm/lab.ts";
-import type { Evidence, OptimizeOutput, Mapped, Net, SimulateOutput, SwimmerOutput, TankOutput } from "./outputs.ts";
+import type { CertifyOutput, HeightMapOutput } from "../contracts.ts";
+import type { Net, OptimizeReply, SimulateOutput, SwimmerOutput, TankOutput } from "./outputs.ts";
 import { type Document, type Gait, type Optimum, activeGait, shown } from "./document.ts";
 import { pairs, sampled } from "./spline.ts";
 
@@ -17,11 +18,11 @@ export const firstNumbers = signal<number | null>(null);
 export const trouble = signal("");
 export const swum = signal<readonly [SimulateOutput | null, SimulateOutput | null]>([null, null]);
 export const tank = signal<readonly [TankOutput | null, TankOutput | null]>([null, null]);
-export const evidence = signal<{ of: string; output: Evidence } | null>(null);
+export const evidence = signal<{ of: string; output: CertifyOutput } | null>(null);
 export const motions = signal<readonly [Float64Array | null, Float64Array | null]>([null, null]);
 export const map = signal<{ heights: Float64Array; count: number; row: string; halfWidth: number } | null>(null);
-export const curves = signal<Mapped | null>(null);
-export type FoundOptimum = { of: string } & ({ output: OptimizeOutput } | { reason: string });
+export const curves = signal<HeightMapOutput | null>(null);
+export type FoundOptimum = { of: string } & ({ output: OptimizeReply } | { reason: string });
 export const optima = signal<ReadonlyMap<Optimum, FoundOptimum>>(new Map());
 
 export const INTERVALS = 240;
@@ -150,7 +151,7 @@ const certifyAsked = computed(() => {
 });
 const latestEvidence = new Latest(async (text: string) => {
   try {
-    evidence.value = { of: text, output: await slow.json<Evidence>("certify", text) };
+    evidence.value = { of: text, output: await slow.json<CertifyOutput>("certify", text) };
   } catch {
     evidence.value = null;
   }
@@ -179,7 +180,7 @@ const latestMap = new Latest(async (text: string) => {
       // Replaced by a newer request, which starts coarse again.
       if (mapAsked.peek() !== text) return;
     }
-    curves.value = await mapLab.json<Mapped>("height-map", question);
+    curves.value = await mapLab.json<HeightMapOutput>("height-map", question);
     void warmUp();
   } catch (error) {
     showError(error);
@@ -232,7 +233,7 @@ const latestOptima = new Latest(async (_: number) => {
     const late = setTimeout(() => (overdue.value = true), PATIENCE_MS);
     const counting = setInterval(() => (searching.value = { what, seconds: (searching.peek()?.seconds ?? 0) + 1 }), 1000);
     const found = await search
-      .json<OptimizeOutput>("optimize", of)
+      .json<OptimizeReply>("optimize", of)
       .then((output) => ({ of, output }), (error: Error) => ({ of, reason: error.message }));
     clearTimeout(late);
     clearInterval(counting);
@@ -253,7 +254,7 @@ async function warmUp(): Promise<void> {
   warm = true;
   for (const what of ["displacement", "efficiency-small"] as const) {
     const of = optimumAsked(what);
-    const output = await search.json<OptimizeOutput>("optimize", of).catch(() => null);
+    const output = await search.json<OptimizeReply>("optimize", of).catch(() => null);
     if (output && !optima.peek().has(what)) optima.value = new Map(optima.peek()).set(what, { of, output });
     for (const max_angle of WARM_BOUNDS) await search.ask("optimize", { ...JSON.parse(of), bounds: { max_angle } }).catch(() => null);
   }

@@ -17,7 +17,8 @@ export const SYMBOLS: Record<Row, string> = { x: "Hₓ", y: "H_y", theta: "H_θ"
 export const ROW_NAMES: Record<Row, string> = { x: "x, along", y: "y, across", theta: "θ, turning" };
 
 /** Formats a number with significant digits, a typographic minus, and no minus before zero. */
-export function figure(value: number, digits: number): string {
+export function figure(value: number | null, digits: number): string {
+  if (value === null) return "–";
   const text = value.toFixed(digits);
   return Number(text) === 0 ? (0).toFixed(digits) : text.replace("-", "−");
 }

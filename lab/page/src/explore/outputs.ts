@@ -1,4 +1,6 @@
-// Outputs of the module, with the keys of `swimmer … --json`.
+// Outputs of the module: documents of the command, and further numbers of the page.
+
+import type { NetMotion, OptimizeOutput } from "../contracts.ts";
 
 export interface SwimmerOutput {
   name: string;
@@ -16,15 +18,7 @@ export interface SwimmerOutput {
 }
 
 /** Numbers that are updated during a drag. */
-export interface Net {
-  displacement_over_length: number;
-  displacement_m: number;
-  lateral_over_length: number;
-  rotation_rad: number;
-  delta_y_over_length: number;
-  delta_theta_rad: number;
-  efficiency: number;
-  efficiency_constant_power: number;
+export interface Net extends NetMotion {
   speed_m_per_s: number;
   speed_over_length_per_s: number;
 }
@@ -41,34 +35,8 @@ export interface TankOutput {
   part: string | null;
 }
 
-export interface Check {
-  name: string;
-  value: number;
-  tolerance: number;
-  pass: boolean;
-}
-
-export interface Evidence {
-  pass: boolean;
-  verdict: "pass" | "fail" | "undecided";
-  checks: Check[];
-}
+type Keys<Union> = Union extends unknown ? keyof Union : never;
+type Value<Union, Key> = Union extends unknown ? (Key extends keyof Union ? Union[Key] : undefined) : never;
 
 /** Output of `swimmer optimize`, whose keys depend on the objective, with the text of the gait file as `gait`. */
-export interface OptimizeOutput {
-  displacement_over_length: number;
-  lateral_over_length?: number;
-  rotation_rad?: number;
-  efficiency?: number;
-  speed_over_length_per_s?: number;
-  certificate: Evidence;
-  gait: string;
-}
-
-export interface Mapped {
-  max_angle_rad: number;
-  at_origin_over_length: number;
-  zero_on_diagonal: number | null;
-  zero_on_antidiagonal: number | null;
-  zero_curves: { closed: boolean; vertices: [number, number][] }[];
-}
+export type OptimizeReply = { [Key in Exclude<Keys<OptimizeOutput>, "gait">]: Value<OptimizeOutput, Key> } & { gait: string };

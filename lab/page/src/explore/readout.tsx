@@ -86,7 +86,7 @@ function Certificate() {
           {output.checks.map(({ name, value, tolerance, pass }) => (
             <tr key={name} title={name} class={pass ? "" : "failed"}>
               <th scope="row">{pass ? "✓" : "✗"} {condition(name)}</th>
-              <td>{value.toExponential(1)}</td>
+              <td>{value?.toExponential(1) ?? "–"}</td>
               <td>{name.endsWith("_least") ? "≥" : "≤"} {tolerance.toExponential(0)}</td>
             </tr>
           ))}

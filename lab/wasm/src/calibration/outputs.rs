@@ -1,5 +1,6 @@
 //! Outputs of the calls: those of `swimmer calibrate`, and additional data for the figures.
 
+use calibrate::assessment::ExcludedPart;
 use calibrate::evidence::{CurvePoint, Evidence, EvidenceDocument, Pair};
 use calibrate::{NuisanceFit, RunResult};
 use operations::calibrate::{Fitted, Output};
@@ -16,7 +17,8 @@ pub(super) struct FitOutput<'a> {
     fit: &'a Output,
     /// Data for the figures, run by run.
     figures: Vec<RunFigures>,
-    excluded: Vec<Excluded>,
+    /// Runs that were not fitted.
+    excluded: Vec<ExcludedPart>,
     /// Swimmer file of the fitted swimmer.
     swimmer: String,
 }
@@ -31,13 +33,6 @@ struct RunFigures {
     each: Vec<[f64; 2]>,
     /// x, y \[m\] of the middle link, thinned.
     path: Vec<[f64; 2]>,
-}
-
-/// A run that was not fitted.
-#[derive(Serialize)]
-struct Excluded {
-    file: String,
-    reason: String,
 }
 
 /// Largest number of points of a plotted path.
@@ -88,7 +83,7 @@ impl<'a> FitOutput<'a> {
             excluded: result
                 .excluded
                 .iter()
-                .map(|run| Excluded {
+                .map(|run| ExcludedPart {
                     file: run.file.display().to_string(),
                     reason: run.reason.clone(),
                 })
