@@ -62,5 +62,6 @@ fn line_of(stage: Stage) -> Line {
         Stage::Optima => Line::with_share("looking for optima"),
         Stage::Continuation => Line::with_share("following the gaits"),
         Stage::Plan => Line::with_share("searching for a plan"),
+        Stage::Blocks => Line::with_share("solving the blocks"),
     }
 }

@@ -30,6 +30,8 @@ pub enum Stage {
     Continuation,
     /// Search for a plan.
     Plan,
+    /// Blocks of a sweep.
+    Blocks,
 }
 
 /// Progress of a long computation.

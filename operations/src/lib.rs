@@ -33,6 +33,8 @@ pub mod played;
 pub mod robot_limits;
 pub mod simulate;
 mod source;
+#[cfg(feature = "sweeps")]
+pub mod sweep;
 pub mod text;
 
 pub use context::{Context, Files, Progress, Stage, Watch};

@@ -7,17 +7,15 @@ mod progress;
 mod submit;
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
+use ::sweep::{Shard, SweepError};
 use clap::Subcommand;
-use sweep::{Plan, Running, Shard, SweepError};
+use operations::{Error, sweep as operation};
 
+use crate::context::context;
 use crate::failure::{Failure, Outcome};
 use crate::new_file::may_be_written;
 use crate::output::Output;
-use crate::progress::Progress;
-use crate::threads;
-use progress::{MergeOutput, RunOutput, StatusOutput};
 
 /// Find the best gaits of many designs, over morphology, fluid, bounds and rates
 ///
@@ -75,9 +73,8 @@ impl Sweep {
             Self::Plan(plan) => plan.run(output),
             Self::Run(run) => run.run(output),
             Self::Status(status) => {
-                let plan = Plan::load(&status.folder)?;
-                let found = sweep::status(&plan, &status.folder)?;
-                output.print(&StatusOutput(found));
+                let found = operation::status(&status.folder)?;
+                output.rendered(&found, &progress::status_text(&found));
                 Ok(())
             }
             Self::Merge(merge) => merge.run(output),
@@ -89,32 +86,14 @@ impl Sweep {
 
 impl Run {
     fn run(self, output: Output) -> Outcome {
-        let plan = Plan::load(&self.folder)?;
         let shard = match self.shard {
             Some(shard) => shard,
             None => of_environment()?.unwrap_or(Shard::WHOLE),
         };
-        let progress = Progress::of_steps(shard.blocks(&plan));
-        progress.doing(format!("blocks of shard {shard}"));
-        let began = Instant::now();
-        let ran = sweep::run(
-            &plan,
-            &self.folder,
-            &Running {
-                shard,
-                threads: self.threads.map_or_else(threads::available, usize::from),
-                seconds: &|| began.elapsed().as_secs_f64(),
-                watch: &|ran| progress.at(ran.done),
-            },
-        )?;
-        drop(progress);
-        output.print(&RunOutput {
-            plan: plan.hash(),
-            shard: shard.to_string(),
-            tasks: plan.tasks(),
-            ran,
-            seconds: began.elapsed().as_secs_f64(),
-        });
+        let mut context = context();
+        context.threads = self.threads.map_or(context.threads, usize::from);
+        let ran = operation::run(&self.folder, shard, &context)?;
+        output.rendered(&ran, &progress::run_text(&ran));
         Ok(())
     }
 }
@@ -122,9 +101,8 @@ impl Run {
 impl Merge {
     fn run(self, output: Output) -> Outcome {
         may_be_written(&self.output)?;
-        let plan = Plan::load(&self.folder)?;
-        let merged = sweep::merge(&plan, &self.folder, &self.output)?;
-        output.print(&MergeOutput::new(&plan, merged, self.output)?);
+        let merged = operation::merge(&self.folder, &self.output)?;
+        output.rendered(&merged, &progress::merge_text(&merged));
         Ok(())
     }
 }
@@ -167,11 +145,7 @@ fn of_environment() -> Outcome<Option<Shard>> {
 
 impl From<SweepError> for Failure {
     fn from(error: SweepError) -> Self {
-        if error.is_bad_input() {
-            Self::bad_input(&error)
-        } else {
-            Self::tried(&error)
-        }
+        Error::from(error).into()
     }
 }
 

@@ -4,13 +4,13 @@ use std::fmt;
 use std::path::PathBuf;
 
 use clap::ValueEnum;
-use serde::Serialize;
-use sweep::{Doubt, DoubtKind, Field, Map as Found, Plan, Slice, doubts, map};
+use operations::sweep::{self as operation, MapOutput, MapRequest, field};
+use sweep::{DoubtKind, Field};
 use swimmer_files::write_atomically;
 
 use super::picture;
 use super::shown;
-use crate::failure::{Failure, Outcome};
+use crate::failure::Outcome;
 use crate::new_file::may_be_written;
 use crate::output::{Output, document};
 use crate::picture_file::Kind;
@@ -65,26 +65,6 @@ pub(super) enum MapQuantity {
     Pareto,
 }
 
-#[derive(Debug, Serialize)]
-struct MapOutput {
-    plan: String,
-    tasks: u64,
-    done: u64,
-    failed: u64,
-    /// Of the slice.
-    designs: usize,
-    without_gait: usize,
-    uncertified: usize,
-    /// Number of kinds of gait, by their arcs.
-    kinds: usize,
-    folds: usize,
-    pareto: usize,
-    /// Of the whole plan.
-    doubts: Vec<Doubt>,
-    picture: Option<PathBuf>,
-    export: Option<PathBuf>,
-}
-
 impl Map {
     pub(super) fn run(self, output: Output) -> Outcome {
         let kind = match &self.output {
@@ -97,118 +77,49 @@ impl Map {
         if let Some(path) = &self.export {
             may_be_written(path)?;
         }
-        let plan = Plan::load(&self.folder)?;
-        let slice = self.slice(&plan)?;
-        let found = map(&plan, &self.folder, &slice)?;
-        let doubts = doubts(&plan, &self.folder)?;
+        let mut found = operation::map(&MapRequest {
+            folder: self.folder,
+            across: self.across,
+            up: self.up,
+            at: self.at,
+        })?;
         if let (Some(path), Some(kind)) = (&self.output, kind) {
-            kind.write(path, &picture::drawn(&found, self.quantity)?)?;
+            kind.write(path, &picture::drawn(&found.map, self.quantity)?)?;
         }
         if let Some(path) = &self.export {
-            write_atomically(path, document(&found).as_bytes())?;
+            write_atomically(path, document(&found.map).as_bytes())?;
         }
-        output.print(&MapOutput::new(
-            &plan,
-            &found,
-            doubts,
-            self.output,
-            self.export,
-        ));
+        found.picture = self.output;
+        found.export = self.export;
+        output.rendered(&found, &Text(&found));
         Ok(())
-    }
-
-    fn slice(&self, plan: &Plan) -> Outcome<Slice> {
-        let mut slice = Slice::first(plan).ok_or_else(|| {
-            Failure::BadInput(
-                "a map needs a grid of two axes or more; read the merged table instead".to_owned(),
-            )
-        })?;
-        let place = |field: Field| {
-            let mut axes = plan.axes().iter();
-            axes.position(|axis| axis.name == field).ok_or_else(|| {
-                let all: Vec<_> = plan.axes().iter().map(|axis| axis.name.name()).collect();
-                Failure::BadInput(format!(
-                    "{field} is no axis of this plan, which has {}",
-                    all.join(", ")
-                ))
-            })
-        };
-        let given = [self.across, self.up].map(|field| field.map(place).transpose());
-        let [across, up] = given;
-        let (across, up) = (across?, up?);
-        let other = |taken: usize| usize::from(taken == 0);
-        slice.axes = match (across, up) {
-            (Some(across), Some(up)) => [across, up],
-            (Some(across), None) => [across, other(across)],
-            (None, Some(up)) => [other(up), up],
-            (None, None) => slice.axes,
-        };
-        for (field, value) in &self.at {
-            let axis = place(*field)?;
-            let values = &plan.axes()[axis];
-            let off = |index: &u64| (values.value(*index) - value).abs();
-            let nearest = (0..values.count()).min_by(|a, b| off(a).total_cmp(&off(b)));
-            slice.at[axis] = nearest.unwrap_or(0);
-        }
-        Ok(slice)
-    }
-}
-
-impl MapOutput {
-    fn new(
-        plan: &Plan,
-        found: &Found,
-        doubts: Vec<Doubt>,
-        picture: Option<PathBuf>,
-        export: Option<PathBuf>,
-    ) -> Self {
-        let is = |word: &str| {
-            found
-                .status
-                .iter()
-                .flatten()
-                .filter(|one| **one == word)
-                .count()
-        };
-        let kinds: std::collections::BTreeSet<_> =
-            found.structure.iter().flatten().flatten().collect();
-        Self {
-            plan: plan.hash(),
-            tasks: plan.tasks(),
-            done: plan.tasks(),
-            failed: found.designs_without_gait,
-            designs: found.status.iter().map(Vec::len).sum(),
-            without_gait: is("none"),
-            uncertified: is("uncertified"),
-            kinds: kinds.len(),
-            folds: found.folds.len(),
-            pareto: found.pareto.len(),
-            doubts,
-            picture,
-            export,
-        }
     }
 }
 
 /// Largest number of doubts that are listed singly.
 const TOLD: usize = 12;
 
-impl fmt::Display for MapOutput {
+/// Output as text.
+struct Text<'a>(&'a MapOutput);
+
+impl fmt::Display for Text<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(output) = self;
         let count = |kind| {
-            self.doubts
+            output
+                .doubts
                 .iter()
                 .filter(|doubt| doubt.kind == kind)
                 .count()
         };
         let mut rows = Rows::default();
-        rows.row("designs drawn", self.designs.to_string())
-            .row("without a gait", self.without_gait.to_string())
-            .row("not certified", self.uncertified.to_string())
-            .row("kinds of gait", self.kinds.to_string())
+        rows.row("designs drawn", output.designs.to_string())
+            .row("without a gait", output.without_gait.to_string())
+            .row("not certified", output.uncertified.to_string())
+            .row("kinds of gait", output.kinds.to_string())
             .row(
                 "not beaten in speed and efficiency",
-                self.pareto.to_string(),
+                output.pareto.to_string(),
             )
             .row(
                 "unlike their neighbours",
@@ -219,17 +130,17 @@ impl fmt::Display for MapOutput {
                     count(DoubtKind::Jump)
                 ),
             );
-        for (what, path) in [("picture", &self.picture), ("numbers", &self.export)] {
+        for (what, path) in [("picture", &output.picture), ("numbers", &output.export)] {
             if let Some(path) = path {
                 rows.row(what, shown(path));
             }
         }
         write!(f, "{rows}")?;
-        if self.doubts.is_empty() {
+        if output.doubts.is_empty() {
             return Ok(());
         }
         let mut table = Table::new(["look at", "what", "its neighbour", "better by"]);
-        for doubt in self.doubts.iter().take(TOLD) {
+        for doubt in output.doubts.iter().take(TOLD) {
             table.line([
                 doubt.key.to_string(),
                 match doubt.kind {
@@ -245,23 +156,15 @@ impl fmt::Display for MapOutput {
             ]);
         }
         write!(f, "\n\n{table}")?;
-        if self.doubts.len() > TOLD {
+        if output.doubts.len() > TOLD {
             write!(
                 f,
                 "\n  and {} more (--json lists all)",
-                self.doubts.len() - TOLD
+                output.doubts.len() - TOLD
             )?;
         }
         Ok(())
     }
-}
-
-fn field(text: &str) -> Result<Field, String> {
-    let all = Field::ALL.map(Field::name);
-    Field::ALL
-        .into_iter()
-        .find(|field| field.name() == text)
-        .ok_or_else(|| format!("an axis is one of {}", all.join(", ")))
 }
 
 fn at(text: &str) -> Result<(Field, f64), String> {
