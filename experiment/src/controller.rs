@@ -27,7 +27,7 @@ use swimmer_model::wrapped_angle;
 use crate::learning::{Learning, TrackedCycle};
 use crate::monitor::{CycleReport, Likeness, Monitor};
 use crate::pose::mean;
-use crate::{Course, Evaluated, Evaluation, Event, Interruption, Pose};
+use crate::{Course, Evaluated, Evaluation, Event, Interruption, Pose, TankWalls};
 
 pub use ending::Ending;
 
@@ -165,8 +165,9 @@ struct Play {
 impl Controller {
     /// A controller of a robot that rests since `now_s` with straight joints.
     pub fn new(planner: Planner, goal: Goal, options: Options, now_s: f64) -> Self {
-        let (tank, _) = planner.tank();
-        let monitor = Monitor::new(*planner.model(), tank);
+        let (tank, margin_m) = planner.tank();
+        let walls = tank.map(|tank| TankWalls { tank, margin_m });
+        let monitor = Monitor::new(*planner.model(), walls);
         Self {
             planner,
             goal,
@@ -303,8 +304,9 @@ impl Controller {
         let unexplained = matches!(likeness, Some(Likeness::WrongGait(None)));
         let repeated = std::mem::replace(&mut self.unexplained, unexplained);
         match likeness {
-            None | Some(Likeness::Gain(_) | Likeness::Drift(_)) => {}
+            None => {}
             Some(Likeness::WrongGait(None)) if !repeated => {}
+            Some(likeness) if likeness.is_correctable() => {}
             Some(likeness) => self.end(Ending::Departed(likeness)),
         }
     }

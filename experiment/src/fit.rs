@@ -1,5 +1,5 @@
 //! Least squares of a tracked cycle by its predicted course: start pose, gain of the joint angles, drift of the tank, and what the
-//! match of the clocks left over.
+//! match of the clocks left over; on request also the drag, ln χ and ln r_s.
 
 use nalgebra::{RowSVector, SMatrix, SVector, Vector2};
 use swimmer_model::{Model, wrapped_angle};
@@ -15,31 +15,81 @@ const GAIN_STEP: f64 = 0.02;
 const PRIORS: [f64; 3] = [0.3, 3e-3, 0.01];
 /// Step of the time for differences \[s\].
 const TIME_STEP: f64 = 0.01;
-/// Parameters: start (x, y, heading), gain, drift (x, y), delay.
-const COUNT: usize = 7;
+/// Step of ln χ and ln r_s for differences, and their prior deviation: a robot that a campaign has not calibrated.
+const DRAG_STEP: f64 = 0.02;
+const DRAG_PRIOR: f64 = 0.06;
+/// Parameters: start (x, y, heading), gain, drift (x, y), delay, ln χ, ln r_s.
+const COUNT: usize = 9;
 const ITERATIONS: usize = 5;
 /// Share of a cycle's poses that may be outliers.
 const OUTLIERS: f64 = 0.2;
 /// Share of a cycle at its start and at its end that the net motion is measured over.
 const END: f64 = 0.15;
 
-/// Course with its derivative by the gain of both joints.
+/// Course with its derivative by the gain of both joints, and if requested by the drag.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Basis {
     pub(crate) course: Course,
+    gain: Around,
+    drag: Option<[Around; 2]>,
+}
+
+/// Courses with one parameter below and above its value.
+#[derive(Debug, Clone, PartialEq)]
+struct Around {
     below: Course,
     above: Course,
+    /// Difference of the parameter.
+    width: f64,
+}
+
+impl Around {
+    /// Derivative of the course by the parameter at a time.
+    fn slope(&self, time_s: f64) -> (Vector2<f64>, f64) {
+        let (below, above) = (self.below.at(time_s), self.above.at(time_s));
+        let scale = 1.0 / self.width;
+        (
+            (above.position() - below.position()) * scale,
+            (above.theta - below.theta) * scale,
+        )
+    }
 }
 
 impl Basis {
     pub(crate) fn new(model: &Model<f64>, course: Course) -> Self {
         let by = |gain: f64| course.with_shapes(model, |shape| shape * gain);
-        let (below, above) = (by(1.0 - GAIN_STEP), by(1.0 + GAIN_STEP));
+        let gain = Around {
+            below: by(1.0 - GAIN_STEP),
+            above: by(1.0 + GAIN_STEP),
+            width: 2.0 * GAIN_STEP,
+        };
         Self {
             course,
-            below,
-            above,
+            gain,
+            drag: None,
         }
+    }
+
+    /// The same with the derivatives by ln χ and ln r_s. Returns `None` if the drag cannot differ.
+    pub(crate) fn with_drag(&self, model: &Model<f64>) -> Option<Self> {
+        let by = |chi: f64, radius: f64| {
+            let mut swimmer = *model.swimmer();
+            swimmer.chi *= chi.exp();
+            swimmer.sphere_radius *= radius.exp();
+            let model = Model::new(&swimmer).ok()?;
+            Some(self.course.with_shapes(&model, |shape| shape))
+        };
+        let around = |chi: f64, radius: f64| {
+            Some(Around {
+                below: by(-chi, -radius)?,
+                above: by(chi, radius)?,
+                width: 2.0 * DRAG_STEP,
+            })
+        };
+        Some(Self {
+            drag: Some([around(DRAG_STEP, 0.0)?, around(0.0, DRAG_STEP)?]),
+            ..self.clone()
+        })
     }
 
     /// Derivative of the course by time.
@@ -52,13 +102,13 @@ impl Basis {
         )
     }
 
-    fn slope(&self, time_s: f64) -> (Vector2<f64>, f64) {
-        let (below, above) = (self.below.at(time_s), self.above.at(time_s));
-        let scale = 0.5 / GAIN_STEP;
-        (
-            (above.position() - below.position()) * scale,
-            (above.theta - below.theta) * scale,
-        )
+    /// Derivatives by the drag; zero if they were not requested.
+    fn drag_slopes(&self, time_s: f64) -> [(Vector2<f64>, f64); 2] {
+        self.drag
+            .as_ref()
+            .map_or([(Vector2::zeros(), 0.0); 2], |around| {
+                [0, 1].map(|which: usize| around[which].slope(time_s))
+            })
     }
 }
 
@@ -80,6 +130,8 @@ pub(crate) struct Fit {
     pub(crate) sigma_drift: f64,
     /// Start of the cycle after its reported start \[s\].
     delay_s: f64,
+    /// ln χ and ln r_s over the model's; zero if the basis has no derivatives by them.
+    drag: [f64; 2],
     /// Root mean square of the residuals over their expected deviation.
     pub(crate) misfit: f64,
     /// Measured poses at start and end, with their deviations \[m, rad\]; `None` if an end was not seen.
@@ -105,6 +157,7 @@ pub(crate) fn fit(
         drift: Vector2::zeros(),
         sigma_drift: PRIORS[1],
         delay_s: 0.0,
+        drag: [0.0; 2],
         misfit: 0.0,
         ends: None,
     };
@@ -116,6 +169,10 @@ pub(crate) fn fit(
         normal[(4, 4)] = PRIORS[1].powi(-2);
         normal[(5, 5)] = PRIORS[1].powi(-2);
         normal[(6, 6)] = PRIORS[2].powi(-2);
+        for (index, drag) in [(7, fit.drag[0]), (8, fit.drag[1])] {
+            normal[(index, index)] = DRAG_PRIOR.powi(-2);
+            right[index] = -drag * normal[(index, index)];
+        }
         right[3] = (1.0 - fit.gain) * normal[(3, 3)];
         right[4] = -fit.drift.x * normal[(4, 4)];
         right[5] = -fit.drift.y * normal[(5, 5)];
@@ -137,6 +194,8 @@ pub(crate) fn fit(
         fit.gain += step[3];
         fit.drift += Vector2::new(step[4], step[5]);
         fit.delay_s += step[6];
+        fit.drag[0] += step[7];
+        fit.drag[1] += step[8];
     }
     let inflated = |index: usize| (FRAMES_PER_SAMPLE * covariance[(index, index)]).sqrt();
     fit.sigma_gain = inflated(3);
@@ -178,16 +237,35 @@ fn weights(pose: &Pose, [position, heading]: [f64; 2]) -> [f64; 2] {
 impl Fit {
     /// Pose that the fit predicts at a time from the start.
     fn at(&self, basis: &Basis, time_s: f64) -> swimmer_model::Pose<f64> {
-        let course = basis.course.at(time_s - self.delay_s);
-        let (slope, turn_slope) = basis.slope(time_s - self.delay_s);
-        let more = self.gain - 1.0;
-        let local = course.position() + slope * more;
+        let (local, turn) = self.local(basis, time_s - self.delay_s);
         let position = self.start.transform(&local) + self.drift * time_s;
-        swimmer_model::Pose::new(
-            position.x,
-            position.y,
-            self.start.theta + course.theta + turn_slope * more,
-        )
+        swimmer_model::Pose::new(position.x, position.y, self.start.theta + turn)
+    }
+
+    /// Position and heading of the fitted course in its own frame.
+    fn local(&self, basis: &Basis, time_s: f64) -> (Vector2<f64>, f64) {
+        let course = basis.course.at(time_s);
+        let (mut position, mut turn) = (course.position(), course.theta);
+        let by_gain = basis.gain.slope(time_s);
+        let by_drag = basis.drag_slopes(time_s);
+        let more = [self.gain - 1.0, self.drag[0], self.drag[1]];
+        for ((slope, turn_slope), more) in [by_gain, by_drag[0], by_drag[1]].into_iter().zip(more) {
+            position += slope * more;
+            turn += turn_slope * more;
+        }
+        (position, turn)
+    }
+
+    /// Fitted net motion over the predicted one: 1 for a robot that moves as predicted.
+    pub(crate) fn share_of_motion(&self, basis: &Basis, model_errors: [f64; 2]) -> f64 {
+        let net = basis.course.net();
+        let (position, turn) = self.local(basis, basis.course.duration_s());
+        let [by_position, by_turn] =
+            model_errors.map(|error| error.max(f64::MIN_POSITIVE).powi(-2));
+        let product = |position: &Vector2<f64>, turn: f64| {
+            net.position().dot(position) * by_position + net.theta * turn * by_turn
+        };
+        product(&position, turn) / product(&net.position(), net.theta)
     }
 
     /// Derivatives of position and heading, and the residuals of both.
@@ -204,11 +282,13 @@ impl Fit {
     ) {
         let time = pose.time_s - began_s;
         let here = self.at(basis, time);
-        let (slope, turn_slope) = basis.slope(time - self.delay_s);
+        let (slope, turn_slope) = basis.gain.slope(time - self.delay_s);
+        let by_drag = basis.drag_slopes(time - self.delay_s);
         let (velocity, turn_rate) = basis.velocity(time - self.delay_s);
         let (sin, cos) = self.start.theta.sin_cos();
         let turned = |v: Vector2<f64>| Vector2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y);
         let (slope, velocity) = (turned(slope), turned(velocity));
+        let [by_chi, by_radius] = by_drag.map(|(slope, _)| turned(slope));
         let arm = here.position() - self.drift * time - self.start.position();
         let rows = SMatrix::from([
             [1.0, 0.0],
@@ -218,8 +298,21 @@ impl Fit {
             [time, 0.0],
             [0.0, time],
             [-velocity.x, -velocity.y],
+            by_chi.into(),
+            by_radius.into(),
         ]);
-        let turn_row = RowSVector::from([0.0, 0.0, 1.0, turn_slope, 0.0, 0.0, -turn_rate]);
+        let [turn_by_chi, turn_by_radius] = by_drag.map(|(_, turn)| turn);
+        let turn_row = RowSVector::from([
+            0.0,
+            0.0,
+            1.0,
+            turn_slope,
+            0.0,
+            0.0,
+            -turn_rate,
+            turn_by_chi,
+            turn_by_radius,
+        ]);
         let off = Vector2::new(pose.x_m, pose.y_m) - here.position();
         let turn_off = wrapped_angle(pose.heading_rad - here.theta);
         (rows, turn_row, off, turn_off)

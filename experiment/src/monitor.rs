@@ -9,13 +9,12 @@ use std::collections::VecDeque;
 use std::fmt;
 use std::sync::Arc;
 
-use forecast::Tank;
 use nalgebra::Vector2;
 use swimmer_model::Model;
 
 use self::evaluation::Cycle;
 use crate::fit::Basis;
-use crate::{Course, Pose};
+use crate::{Course, Pose, TankWalls};
 
 pub use evaluation::{Evaluated, Evaluation};
 
@@ -75,6 +74,8 @@ pub enum Likeness {
     WrongGait(Option<String>),
     /// A wall holds the swimmer.
     Wall,
+    /// The swimmer makes this share of the predicted motion, as one whose drag differs.
+    Uncalibrated(f64),
 }
 
 impl fmt::Display for Likeness {
@@ -82,7 +83,7 @@ impl fmt::Display for Likeness {
         match self {
             Self::Gain(gain) => write!(
                 f,
-                "the joints turn {:.1} % of the commanded angles",
+                "the joints turn {:.1} % of the commanded angles, or the drag differs as much: calibrate it",
                 gain * 100.0
             ),
             Self::Drift([x, y]) => {
@@ -97,11 +98,21 @@ impl fmt::Display for Likeness {
             Self::WrongGait(Some(name)) => write!(f, "the robot plays another gait: {name}"),
             Self::WrongGait(None) => f.write_str("the robot does not follow this gait"),
             Self::Wall => f.write_str("a wall holds the swimmer"),
+            Self::Uncalibrated(share) => write!(
+                f,
+                "the swimmer makes {:.1} % of the predicted motion, as one with another drag: calibrate it",
+                share * 100.0
+            ),
         }
     }
 }
 
 impl Likeness {
+    /// Returns `true` for what a calibration or a controller takes into account: the joints follow the commands.
+    pub fn is_correctable(&self) -> bool {
+        matches!(self, Self::Gain(_) | Self::Drift(_) | Self::Uncalibrated(_))
+    }
+
     /// Returns `true` if both are of one kind.
     fn is_like(&self, other: &Self) -> bool {
         match (self, other) {
@@ -111,6 +122,8 @@ impl Likeness {
                 let [one, two] = [one, two].map(|drift| Vector2::from(*drift));
                 (one - two).norm() < ALIKE * one.norm().max(two.norm())
             }
+            // A robot without calibration may pass for one of another gain.
+            (Self::Gain(_), Self::Uncalibrated(_)) | (Self::Uncalibrated(_), Self::Gain(_)) => true,
             _ => std::mem::discriminant(self) == std::mem::discriminant(other),
         }
     }
@@ -150,7 +163,7 @@ pub struct CycleReport {
 #[derive(Debug)]
 pub struct Monitor {
     model: Model<f64>,
-    tank: Option<Tank>,
+    walls: Option<TankWalls>,
     others: Arc<Vec<(String, Course)>>,
     cycle: Option<Cycle>,
     number: u32,
@@ -161,11 +174,11 @@ pub struct Monitor {
 }
 
 impl Monitor {
-    /// A monitor for a swimmer, with the walls of its tank if they are known.
-    pub fn new(model: Model<f64>, tank: Option<Tank>) -> Self {
+    /// A monitor for a swimmer, with the walls of its tank and the margin at which it is stopped if they are known.
+    pub fn new(model: Model<f64>, walls: Option<TankWalls>) -> Self {
         Self {
             model,
-            tank,
+            walls,
             others: Arc::default(),
             cycle: None,
             number: 0,
@@ -211,7 +224,7 @@ impl Monitor {
         self.number += 1;
         Some(Evaluation {
             model: self.model,
-            tank: self.tank,
+            walls: self.walls,
             others: Arc::clone(&self.others),
             cycle,
             number,

@@ -58,7 +58,7 @@ impl TrackedPlay {
         began_s: f64,
         cycles: u32,
     ) -> Self {
-        let mut monitor = Monitor::new(*model, walls.map(|walls| walls.tank));
+        let mut monitor = Monitor::new(*model, walls);
         for (name, other) in others {
             monitor.know(name, other.clone());
         }

@@ -2,13 +2,12 @@
 
 use std::sync::Arc;
 
-use forecast::Tank;
 use nalgebra::Vector2;
 use swimmer_model::Model;
 
 use super::{CycleReport, Likeness, MeasuredMotion};
 use crate::fit::{Basis, Fit, fit, fit_without_outliers, model_errors};
-use crate::{Course, Pose};
+use crate::{Course, Pose, TankWalls};
 
 /// A misfit above this is no noise: the course is another one.
 const LARGEST_MISFIT: f64 = 3.0;
@@ -24,8 +23,12 @@ const SIGNIFICANT: f64 = 2.4;
 /// Error of a fitted gain by the model, and error of the net displacement by the model as its share.
 const GAIN_BY_MODEL: f64 = 0.005;
 const NET_BY_MODEL: f64 = 0.01;
-/// A wall so near \[m\] explains a misfit.
-const AT_WALL: f64 = 0.006;
+/// A wall that is nearer than this many margins explains a misfit: its drag acts before the robot is stopped at the margin.
+const MARGINS: f64 = 2.0;
+/// Smallest margin that counts for that \[m\].
+const LEAST_MARGIN_M: f64 = 0.003;
+/// Another drag explains a misfit if it leaves no more than this.
+const LARGEST_MISFIT_OF_DRAG: f64 = 2.0;
 /// Number of angles at which a joint may be blocked, between the smallest and the largest of the course.
 const BLOCKED_ANGLES: u32 = 7;
 /// Normal deviate of a 95 % interval.
@@ -37,7 +40,7 @@ const FEWEST_DEVIATIONS: f64 = 4.0;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Evaluation {
     pub(super) model: Model<f64>,
-    pub(super) tank: Option<Tank>,
+    pub(super) walls: Option<TankWalls>,
     /// Gaits that the robot may play by mistake.
     pub(super) others: Arc<Vec<(String, Course)>>,
     pub(super) cycle: Cycle,
@@ -157,10 +160,19 @@ impl Evaluation {
         {
             return likeness;
         }
-        if cycle.is_at_wall(&self.model, self.tank.as_ref()) {
+        if cycle.is_at_wall(&self.model, self.walls.as_ref()) {
             return Likeness::Wall;
         }
-        Likeness::WrongGait(None)
+        self.other_drag(errors)
+            .map_or(Likeness::WrongGait(None), Likeness::Uncalibrated)
+    }
+
+    /// Share of the predicted motion that the robot makes, if another drag explains the poses.
+    fn other_drag(&self, errors: [f64; 2]) -> Option<f64> {
+        let cycle = &self.cycle;
+        let basis = cycle.basis.with_drag(&self.model)?;
+        let fitted = fit(&basis, &cycle.poses, cycle.began_s, errors)?;
+        (fitted.misfit < LARGEST_MISFIT_OF_DRAG).then(|| fitted.share_of_motion(&basis, errors))
     }
 }
 
@@ -200,12 +212,15 @@ impl Cycle {
         })
     }
 
-    fn is_at_wall(&self, model: &Model<f64>, tank: Option<&Tank>) -> bool {
-        let Some(tank) = tank else { return false };
+    fn is_at_wall(&self, model: &Model<f64>, walls: Option<&TankWalls>) -> bool {
+        let Some(TankWalls { tank, margin_m }) = walls else {
+            return false;
+        };
+        let near_m = MARGINS * margin_m.max(LEAST_MARGIN_M);
         self.poses.iter().any(|pose| {
             let time = pose.time_s - self.began_s;
             let course = &self.basis.course;
-            course.distance_to_wall(model, tank, &pose.placed(), time) < AT_WALL
+            course.distance_to_wall(model, tank, &pose.placed(), time) < near_m
         })
     }
 }

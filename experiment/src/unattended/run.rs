@@ -479,11 +479,10 @@ impl Run {
     }
 }
 
-/// Departure that makes a trial invalid. Gains and drifts are results.
+/// Departure that makes a trial invalid. Gains, drifts and another drag are results.
 fn blocking(report: &CycleReport) -> Option<Likeness> {
     let departure = report.departure.as_ref()?;
-    let is_result = matches!(departure.likeness, Likeness::Gain(_) | Likeness::Drift(_));
-    (!is_result).then(|| departure.likeness.clone())
+    (!departure.likeness.is_correctable()).then(|| departure.likeness.clone())
 }
 
 /// Track file of an attempt.

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use crate::virtual_lab::{Lab, Notice, TANK, Truth, model, planner, servos};
+use crate::virtual_lab::{Lab, MARGIN, Notice, TANK, Truth, model, planner, servos};
 use experiment::{
     Course, CycleReport, GaitOnRobot, Likeness, Monitor, Pose, TankWalls, TrackedPlay,
 };
@@ -10,6 +10,11 @@ use forecast::{Kind, Member};
 use nalgebra::Vector2;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+
+const WALLS: TankWalls = TankWalls {
+    tank: TANK,
+    margin_m: MARGIN,
+};
 
 /// All members of full size, from rest with straight joints.
 fn others() -> &'static [(Member, Course)] {
@@ -28,8 +33,22 @@ fn others() -> &'static [(Member, Course)] {
     })
 }
 
-/// Reports of a few single cycles in a row; the robot plays `played` while `expected` is commanded.
+/// Reports of a few single cycles in a row; the robot plays `played` while `expected` is commanded. The monitor knows the other
+/// members by name.
 fn reports(
+    truth: Truth,
+    expected: Member,
+    played: Member,
+    cycles: u32,
+    seed: u64,
+) -> Vec<CycleReport> {
+    let names = |other: &Member| *other != expected;
+    reports_with(names, truth, expected, played, cycles, seed)
+}
+
+/// The same with a monitor that knows the members that `names` selects.
+fn reports_with(
+    names: impl Fn(&Member) -> bool,
     truth: Truth,
     expected: Member,
     played: Member,
@@ -43,9 +62,9 @@ fn reports(
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let heading = rng.random_range(-3.0..3.0);
     let mut lab = Lab::new(truth, swimmer_model::Pose::new(0.0, 0.0, heading), seed);
-    let mut monitor = Monitor::new(model(), Some(TANK));
+    let mut monitor = Monitor::new(model(), Some(WALLS));
     for (other, course) in others() {
-        if *other != expected {
+        if names(other) {
             monitor.know(other.word(false), course.clone());
         }
     }
@@ -221,6 +240,96 @@ fn a_wrong_gait_is_flagged_and_named() {
     }
 }
 
+/// A robot that was never calibrated is called that, or one of another gain, and not one that plays another gait. Its share of the
+/// motion is that of a swimmer with its drag.
+#[test]
+fn a_robot_without_calibration_is_named() {
+    for (chi_factor, radius_factor) in [(1.06, 0.95), (0.94, 1.05), (1.1, 0.92), (1.06, 1.0)] {
+        for kind in Kind::ALL {
+            let (mut named, mut shares) = (0, Vec::new());
+            for seed in 0..10 {
+                let truth = Truth {
+                    chi_factor,
+                    radius_factor,
+                    ..calibrated(seed)
+                };
+                let reports = reports(truth, member(kind), member(kind), 3, seed);
+                let departures: Vec<Likeness> = reports
+                    .into_iter()
+                    .filter_map(|report| Some(report.departure?.likeness))
+                    .collect();
+                for likeness in &departures {
+                    assert!(
+                        likeness.is_correctable(),
+                        "{kind:?}, seed {seed}: {likeness:?}"
+                    );
+                    if let Likeness::Uncalibrated(share) = likeness {
+                        shares.push(*share);
+                    }
+                }
+                named += usize::from(!departures.is_empty());
+            }
+            let expected = share_of_motion(kind, chi_factor, radius_factor);
+            println!(
+                "χ × {chi_factor}, r_s × {radius_factor}, {kind:?}: named in {named} of 10, {} cycles as uncalibrated; true share {expected:.3}, \
+                 found {shares:.3?}",
+                shares.len()
+            );
+            assert!(
+                shares
+                    .iter()
+                    .all(|share| (share / expected - 1.0).abs() < 0.05)
+            );
+            if kind == Kind::Forward && chi_factor > 1.09 {
+                assert!(named == 10 && shares.len() >= 15, "{named} {shares:?}");
+            }
+        }
+    }
+}
+
+/// Net motion of a full cycle with another drag over the predicted one: of its position, or of its turn.
+fn share_of_motion(kind: Kind, chi_factor: f64, radius_factor: f64) -> f64 {
+    let mut swimmer = *model().swimmer();
+    swimmer.chi *= chi_factor;
+    swimmer.sphere_radius *= radius_factor;
+    let course = &others()
+        .iter()
+        .find(|(other, _)| *other == member(kind))
+        .unwrap()
+        .1;
+    let other = course.with_shapes(&swimmer_model::Model::new(&swimmer).unwrap(), |shape| shape);
+    let (predicted, net) = (course.net(), other.net());
+    if kind == Kind::Turn {
+        net.theta / predicted.theta
+    } else {
+        net.position().dot(&predicted.position()) / predicted.position().norm_squared()
+    }
+}
+
+/// No drag explains another gait, also if the monitor does not know it: it is found by the third cycle.
+#[test]
+fn an_unknown_gait_is_no_matter_of_calibration() {
+    let cases = [
+        (Kind::Forward, planner().member(Kind::Left, 1.0)),
+        (Kind::Forward, planner().member(Kind::Forward, -1.0)),
+        (Kind::Left, planner().member(Kind::Turn, 1.0)),
+        (Kind::Left, planner().member(Kind::Left, -1.0)),
+        (Kind::Turn, planner().member(Kind::Turn, -1.0)),
+    ];
+    for (kind, played) in cases {
+        for seed in 0..10 {
+            let truth = calibrated(seed);
+            let reports = reports_with(|_| false, truth, member(kind), played, 3, seed);
+            let departure = reports.into_iter().find_map(|report| report.departure);
+            let named = departure.unwrap_or_else(|| panic!("{kind:?}, {played:?}, seed {seed}"));
+            assert!(
+                !named.likeness.is_correctable(),
+                "{kind:?}, {played:?}: {named:?}"
+            );
+        }
+    }
+}
+
 /// While the evaluation of a cycle takes seconds, the play goes on: a wall is noticed, and the results come in order.
 #[test]
 fn a_slow_evaluation_delays_no_stop() {
@@ -231,12 +340,8 @@ fn a_slow_evaluation_delays_no_stop() {
         course: course.clone(),
         period_s: 6.0,
     };
-    let walls = TankWalls {
-        tank: TANK,
-        margin_m: 0.01,
-    };
     let others = std::iter::empty();
-    let mut play = TrackedPlay::new(&model(), Some(walls), gait.clone(), others, 10.0, 3);
+    let mut play = TrackedPlay::new(&model(), Some(WALLS), gait.clone(), others, 10.0, 3);
     // A robot whose joints do not move, first in the middle of the tank, then at a wall.
     let pose = |time_s: f64, x_m: f64| Pose {
         time_s,

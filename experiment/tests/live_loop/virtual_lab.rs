@@ -69,6 +69,7 @@ pub(crate) fn planner() -> Planner {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Truth {
     pub(crate) chi_factor: f64,
+    pub(crate) radius_factor: f64,
     /// Joint angle over shaft angle.
     pub(crate) gain: [f64; 2],
     /// \[m/s\], and \[rad/s\].
@@ -90,6 +91,7 @@ impl Truth {
     pub(crate) fn faultless() -> Self {
         Self {
             chi_factor: 1.0,
+            radius_factor: 1.0,
             gain: [1.0; 2],
             drift: [0.0; 3],
             blanks: 0.01,
@@ -162,6 +164,7 @@ impl Lab {
     pub(crate) fn new(truth: Truth, pose: swimmer_model::Pose<f64>, seed: u64) -> Self {
         let mut swimmer = Swimmer::robot();
         swimmer.chi *= truth.chi_factor;
+        swimmer.sphere_radius *= truth.radius_factor;
         Self {
             model: Model::new(&swimmer).unwrap(),
             truth,
