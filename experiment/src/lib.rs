@@ -19,10 +19,15 @@
 //! - [`TrackedPlay`]: a play of one gait under the monitor, with the motion over all its cycles.
 //! - [`Controller`]: drives to poses or holds a heading ([`Goal`]). After each cycle it chooses the next ([`Request`]) and learns
 //!   the robot's gains and drift; it ends with a named reason ([`Ending`]).
+//! - [`adaptive`]: the next gait of a campaign that calibrates χ and r_s, by the information per second of tank time.
 //! - [`unattended`]: an experiment of many trials without an operator: plan, run, journal, comparison.
 //!
 //! All times of one loop are on one clock: that of the poses, which the caller maps to the host's clock.
 
+// Formulas in the docs read like the paper's: r_s.
+#![allow(clippy::doc_markdown)]
+
+pub mod adaptive;
 mod clock;
 mod controller;
 mod course;
