@@ -149,7 +149,7 @@ fn kept_documents_conform_to_the_schemas() {
                 let after = command.words.strip_prefix(words);
                 after.is_some_and(|after| after.is_empty() || after.starts_with(' '))
             };
-            if WITHOUT_SCHEMA.iter().any(|words| begins(&words)) {
+            if WITHOUT_SCHEMA.iter().any(begins) {
                 continue;
             }
             let mut found = documents
