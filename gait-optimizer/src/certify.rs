@@ -31,6 +31,7 @@ use crate::certificate::{
     Certificate, Check, Condition, Dependence, SHARE, SWUM_AGAIN, Verdict, turning_number,
 };
 use crate::cycle::Cycle;
+use crate::numerics::worse;
 use crate::optimal_gait::OptimalGait;
 use crate::region::Region;
 use crate::speed::{certify_joined, certify_speed, turned_per_period};
@@ -248,7 +249,7 @@ pub(crate) fn slopes_open(cycle: &Cycle) -> f64 {
     let [fine, coarse] = [Degree::Fine, Degree::Coarse].map(|degree| grid.slopes(&shapes, degree));
     let slopes = fine.iter().zip(&coarse);
     let apart = slopes.map(|(fine, coarse)| (fine - coarse).norm() / fine.norm());
-    apart.fold(0.0, f64::max) / Condition::SlopesKnown.tolerance()
+    apart.fold(0.0, worse) / Condition::SlopesKnown.tolerance()
 }
 
 /// Checks of the uncertainty due to the sampling.

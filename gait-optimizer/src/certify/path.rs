@@ -6,6 +6,7 @@ use swimmer_model::{FirstDerivatives, Model};
 use super::grid::{Degree, Grid};
 use super::stencil;
 use crate::momentum::Momentum;
+use crate::numerics::worse;
 use crate::runge_kutta::{Point, exact_step};
 
 /// Values at a node of the curve.
@@ -187,13 +188,13 @@ impl Path {
                 .iter()
                 .zip(&b.pose)
                 .map(|(a, b)| (a - b).abs())
-                .fold(0.0, f64::max)
+                .fold(0.0, worse)
         };
         self.places
             .iter()
             .zip(&other.places)
             .map(distance)
-            .fold(0.0, f64::max)
+            .fold(0.0, worse)
     }
 }
 

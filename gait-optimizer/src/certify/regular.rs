@@ -92,7 +92,7 @@ impl Subject<'_> {
                 let (before, after) = (rate(*piece.nodes.end())?, rate(*next.nodes.start())?);
                 Some(before.perp(&after).atan2(before.dot(&after)).abs())
             })
-            .fold(0.0, f64::max)
+            .fold(0.0, worse)
     }
 
     /// Deviation from a right angle at the symmetry lines.
@@ -150,7 +150,7 @@ impl Subject<'_> {
             .iter()
             .zip(&coarse)
             .map(|(a, b)| (a - b).abs())
-            .fold(0.0, f64::max);
+            .fold(0.0, worse);
         let least = fine.into_iter().reduce(lesser)?;
         Some(Condition::EffortOnBound.open(least, unsure.min(1e-4)))
     }
@@ -203,7 +203,7 @@ impl Balance {
             .iter()
             .zip(&other.left_over)
             .map(|(a, b)| (a - b).norm() / self.scale)
-            .fold(0.0, f64::max)
+            .fold(0.0, worse)
     }
 
     /// Conditions on `H_u` and H, with costates integrated from their own equations.
@@ -238,5 +238,5 @@ fn largest_costate(path: &Path) -> f64 {
     path.places
         .iter()
         .map(|place| (place.first.power * place.rate).norm() / place.root_power)
-        .fold(0.0, f64::max)
+        .fold(0.0, worse)
 }

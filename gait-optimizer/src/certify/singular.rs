@@ -125,7 +125,7 @@ impl Subject<'_> {
             .places
             .iter()
             .map(|place| place.rate.norm())
-            .fold(0.0, f64::max);
+            .fold(0.0, worse);
         checks.push(Condition::HamiltonianZero.within(hamiltonian, tolerance * rate));
         checks
     }

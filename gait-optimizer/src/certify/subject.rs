@@ -70,7 +70,7 @@ impl<'a> Subject<'a> {
         let slopes = self.path.places.iter().zip(&self.coarse.places);
         let slope = slopes
             .map(|(fine, coarse)| (fine.rate - coarse.rate).norm() / fine.rate.norm())
-            .fold(0.0, f64::max);
+            .fold(0.0, worse);
         Openness {
             slope,
             pose: self.path.pose_distance(&self.coarse),
@@ -108,7 +108,7 @@ impl<'a> Subject<'a> {
         }
         let nodes = 0..self.grid.nodes.len();
         let limits = nodes.flat_map(|node| self.limits_at(node));
-        let overstepped = limits.map(|limit| -limit.margin).reduce(f64::max);
+        let overstepped = limits.map(|limit| -limit.margin).reduce(worse);
         let overstepped = overstepped.map(|by| Condition::KeepsBounds.check(by));
         checks.extend(overstepped.map(at_samples));
         if self.bounds.no_overlap {

@@ -10,6 +10,7 @@ use super::newton::Design;
 use crate::certificate::{Check, Condition, simple_and_turning_once};
 use crate::cycle::Cycle;
 use crate::member::Member;
+use crate::numerics::worse;
 use crate::region::Region;
 
 /// Conditions that the bounds hold and that the curve is simple and turns once.
@@ -32,7 +33,7 @@ pub(super) fn overstepped(cycle: &Cycle, bounds: &Bounds, links: &Links<f64>) ->
     };
     let region = Region::new(&full, links);
     let by = cycle.phi.iter().map(|phi| region.overstepped(phi));
-    by.fold(f64::NEG_INFINITY, f64::max)
+    by.fold(f64::NEG_INFINITY, worse)
 }
 
 /// Conditions that all values agree with the model's own integration and with a new search for the worst case, and that the active

@@ -20,6 +20,7 @@ use super::setting::{Goal, Setting};
 use crate::certificate::{Certificate, Check, Condition, Dependence, again_within};
 use crate::cycle::Cycle;
 use crate::member::Member;
+use crate::numerics::worse;
 use crate::region::Region;
 pub(crate) use from_anywhere::{certify_speed, turned_per_period};
 use legs::{Leg, Legs};
@@ -124,7 +125,7 @@ fn of_the_curve(
             .phi
             .iter()
             .map(|phi| region.overstepped(phi))
-            .fold(f64::NEG_INFINITY, f64::max);
+            .fold(f64::NEG_INFINITY, worse);
         checks.push(Condition::KeepsBounds.check(overstepped));
     }
     if file.bounds.no_overlap {

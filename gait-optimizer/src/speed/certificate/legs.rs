@@ -8,6 +8,7 @@ use super::super::setting::Goal;
 use crate::height_map::legendre::gauss;
 use crate::member::Member;
 use crate::momentum::{Height, Momentum};
+use crate::numerics::worse;
 use crate::region::Region;
 
 /// One place on an arc.
@@ -165,7 +166,7 @@ impl Legs {
             });
         }
         let all = || legs.iter().flat_map(|leg| leg.panels.iter().flatten());
-        let rates = [0, 1].map(|i| all().map(|node| node.rate[i].abs()).fold(0.0, f64::max));
+        let rates = [0, 1].map(|i| all().map(|node| node.rate[i].abs()).fold(0.0, worse));
         let mean_theta = all().map(|node| node.weight * node.theta).sum();
         (!legs.is_empty()).then_some(Self {
             end: [last.x, last.y, last.theta],
