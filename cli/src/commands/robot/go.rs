@@ -60,7 +60,7 @@ pub(super) struct Go {
     /// Distance and angle that count as reached
     #[arg(long, value_name = "LENGTH,ANGLE", value_parser = tolerance, default_value = "3mm,1deg")]
     within: Tolerance,
-    /// Give up after so many cycles
+    /// Give up after this number of cycles
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000), default_value = "400")]
     most_cycles: u32,
     /// Folder with the gaits. If it is missing, the gaits are searched for and kept there; the search takes a minute
