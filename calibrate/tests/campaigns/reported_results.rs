@@ -122,6 +122,16 @@ fn told_results_fit_as_the_tracks_did() {
 /// with and without the other measured quantities, each rounded to a tenth of a millimetre and a fifth of a degree.
 #[test]
 fn a_figure_of_x_over_the_amplitude() {
+    figures_are_covered(6);
+}
+
+#[test]
+#[ignore = "forty fits"]
+fn twenty_figures_of_x_over_the_amplitude() {
+    figures_are_covered(20);
+}
+
+fn figures_are_covered(seeds: u64) {
     let robot = SwimmerFile::preset("robot").unwrap();
     let folder = tempfile::tempdir().unwrap();
     let figure = |quantities: bool, seed: u64| {
@@ -149,7 +159,6 @@ fn a_figure_of_x_over_the_amplitude() {
         let data = CampaignData::load(&campaign).unwrap();
         (campaign, data)
     };
-    let seeds = 20;
     // One honest interval in a thousand covers less often than this.
     let least = Binomial::new(LEVEL, seeds).unwrap().inverse_cdf(1e-3);
     for (quantities, widest) in [(true, 0.1), (false, 3.0)] {
