@@ -9,6 +9,21 @@ use crate::run::{cargo, command, run, target_folder};
 /// Folder of the book's builder, in which npm installs `KaTeX` for the formulas.
 const BUILDER: &str = "xtask/book";
 
+/// Lints and tests the builder.
+///
+/// # Errors
+/// Clippy or a test reports a fault.
+pub(crate) fn test() -> Outcome {
+    run(
+        cargo(["clippy", "-p", "book", "--all-targets"]).args(["--", "-D", "warnings"]),
+        "fix what clippy reports above",
+    )?;
+    run(
+        &mut cargo(["test", "-p", "book"]),
+        "fix what the tests report above",
+    )
+}
+
 /// Installs `KaTeX` if it is missing, and builds the book.
 ///
 /// # Errors

@@ -6,20 +6,18 @@ use super::{PAGE, build};
 use crate::debian;
 use crate::disk::entries;
 use crate::failure::{Failure, Outcome};
-use crate::run::{cargo, command, run, target_folder};
+use crate::run::{command, run, target_folder};
 
 /// Browsers and their Debian packages.
 const BROWSERS: [(&str, &str); 2] = [("chromium", "chromium"), ("firefox-esr", "firefox-esr")];
 
-/// Builds the page and the command, and runs the tests in `tests/`. If a browser is not available, its tests are skipped with a
-/// message, unless they are `required`.
+/// Builds the page, and runs the tests in `tests/` with the command that `cargo test` has built. If a browser is not available, its
+/// tests are skipped with a message, unless they are `required`.
 ///
 /// # Errors
 /// The page cannot be built, a test fails, or a required browser is not available.
 pub(crate) fn test(required: bool) -> Outcome {
     build()?;
-    let next = "fix what the compiler reports above";
-    run(&mut cargo(["build", "--quiet", "-p", "swimmer"]), next)?;
     let tests = entries(&Path::new(PAGE).join("tests"), |name| {
         name.ends_with(".test.mjs")
     })?;
