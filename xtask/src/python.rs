@@ -96,6 +96,8 @@ impl Environment {
                 "--locked",
                 "--profile",
                 "dev",
+                "--features",
+                "as-tested",
                 "--out",
             ])
             .arg(&wheels)
