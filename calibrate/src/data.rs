@@ -268,11 +268,26 @@ pub fn load_run(
     period_s: f64,
     options: &TrackOptions,
 ) -> Result<RunData, CalibrateError> {
+    let (curve, name) = (gait.load()?, gait.to_string());
+    load_run_of(file, curve, name, period_s, options)
+}
+
+/// The same for a gait that is loaded; `name` is for messages.
+///
+/// # Errors
+/// As [`load_run`].
+pub fn load_run_of(
+    file: &Path,
+    gait: AnyGait,
+    name: String,
+    period_s: f64,
+    options: &TrackOptions,
+) -> Result<RunData, CalibrateError> {
     Ok(RunData {
         file: file.to_owned(),
         track: load_tracks(file, options)?,
-        gait: gait.load()?,
-        gait_name: gait.to_string(),
+        gait,
+        gait_name: name,
         period_s,
         front: None,
         timing: Timing::default(),

@@ -90,7 +90,9 @@ pub use campaign::calibrate_campaign;
 pub use cycles::{
     Cycle, CycleError, CycleWarning, Cycles, LeftOut, Loss, Periodicity, Phase, Statistics, Timing,
 };
-pub use data::{CampaignData, RunData, load_run, load_tracks, survey_file, track_options};
+pub use data::{
+    CampaignData, RunData, load_run, load_run_of, load_tracks, survey_file, track_options,
+};
 pub use error::{CalibrateError, FitError};
 pub use evidence::{Evidence, EvidenceOptions, weigh_evidence};
 pub use fit::{

@@ -5,7 +5,7 @@ use std::str::FromStr;
 use std::time::Duration;
 
 use gait_optimizer::Uncertainty;
-use operations::{SwimmerSource, fit_file};
+use operations::{SwimmerSource, check_robots_drag, fit_file};
 use swimmer_files::{AnyGait, GaitSpec, SwimmerFile, parse_angle, parse_rate};
 use swimmer_model::Model;
 
@@ -140,7 +140,7 @@ pub(crate) fn load_swimmer(preset_or_path: &str) -> Outcome<SwimmerFile> {
 /// [`Swimmer::common_drag`]: swimmer_model::Swimmer::common_drag
 pub(crate) fn load_robots_swimmer(preset_or_path: &str) -> Outcome<SwimmerFile> {
     let file = load_swimmer(preset_or_path)?;
-    file.swimmer.common_drag()?;
+    check_robots_drag(&file)?;
     Ok(file)
 }
 

@@ -1,8 +1,9 @@
 //! The `swimmer` command: parses, calls, prints, draws. No physics and no protocol live here.
 //!
 //! Entry points: [`run`] is the whole command, arguments in and exit status out. A caller in the same process (the Python wheel)
-//! keeps its own standard output, its own Ctrl-C and its own threads: it drives a robot by [`RobotHandle`], runs experiments by
-//! [`Experiment`], and gets the JSON document of any other command by [`run_captured`].
+//! keeps its own standard output, its own Ctrl-C and its own threads: it computes by `operations`, drives a robot by
+//! [`RobotHandle`], runs experiments by [`Experiment`], writes the commands' files by [`ResultsFolder`], [`NewFront`] and
+//! [`NewPicture`], and gets the JSON document of any other command by [`run_captured`].
 
 // All prints go through `output`, which does not panic if the reader has gone.
 #![deny(clippy::print_stdout, clippy::print_stderr)]
@@ -14,6 +15,7 @@ mod commands;
 mod context;
 mod csv_text;
 mod experiments;
+mod exports;
 mod failure;
 mod in_fluid;
 mod interrupt;
@@ -43,6 +45,7 @@ pub use crate::commands::robot::{
     IsInterrupted, Reply, RobotHandle, RobotOptions, Stopper, TelemetryReport,
 };
 pub use crate::experiments::Experiment;
+pub use crate::exports::{NewFront, NewPicture, ResultsFolder, check_new_file};
 use crate::failure::BAD_INPUT;
 use crate::output::Output;
 

@@ -64,7 +64,25 @@ pub struct Request {
     pub continuation: Option<continuation::Request>,
 }
 
+/// Number of random starts, unless the user sets one.
+pub const STARTS: u32 = 200;
+/// Seed of the starts, unless the user sets one.
+pub const SEED: u64 = 1;
+
 impl Request {
+    /// A search without bounds, rates or continuation, with the usual starts.
+    pub fn new(swimmer: SwimmerSource, objective: Aim) -> Self {
+        Self {
+            swimmer,
+            objective,
+            max_rate: Vec::new(),
+            bounds: BoundsRequest::default(),
+            starts: STARTS as usize,
+            seed: SEED,
+            continuation: None,
+        }
+    }
+
     /// `true` if the request is answered without an atlas: it follows gaits that need no search.
     pub fn is_without_atlas(&self) -> bool {
         let from_atlas = |following: &continuation::Request| {

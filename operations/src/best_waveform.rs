@@ -13,6 +13,9 @@ use crate::passive::SAMPLES;
 use crate::robot_limits::PERIOD_S;
 use crate::{Context, Error, SwimmerSource, model};
 
+/// Number of odd harmonics, unless the user sets one.
+pub const HARMONICS: usize = 3;
+
 /// Search for the best waveform. Missing values come from the swimmer file: `[passive]` and `[servo]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Request {

@@ -3,6 +3,7 @@
 // Formulas in the docs read like the paper's: r_s.
 #![allow(clippy::doc_markdown)]
 
+pub mod campaign;
 mod doubts;
 mod output;
 
@@ -11,10 +12,12 @@ use std::path::Path;
 use calibrate::{
     Advice, Assessment, CalibrateError, CampaignData, CampaignFit, Evidence, EvidenceOptions,
     FitError, FitOptions, NuisanceFit, NuisanceParameter, RunResult, TrackError, TrackOptions,
-    UsedPoints, advise, assess, calibrate_campaign, calibrate_run, fit_nuisance, load_run,
+    UsedPoints, advise, assess, calibrate_campaign, calibrate_run, fit_nuisance, load_run_of,
     usual_reflectors, weigh_evidence,
 };
-use swimmer_files::{Campaign, GaitSpec, PointName, Reflector, Reflectors, RigidBody, SwimmerFile};
+use swimmer_files::{
+    AnyGait, Campaign, GaitSpec, PointName, Reflector, Reflectors, RigidBody, SwimmerFile,
+};
 
 pub use self::output::{
     JointsOutput, LeftOutOutput, Output, RunJoints, RunOutput, RunsOutput, Samples, Spreads,
@@ -161,13 +164,42 @@ pub struct Run {
     pub warnings: Vec<String>,
 }
 
+/// Gait that a single run is said to have.
+#[derive(Debug, Clone)]
+pub struct StatedGait {
+    spec: GaitSpec,
+    curve: AnyGait,
+}
+
+impl StatedGait {
+    /// Loads a gait.
+    ///
+    /// # Errors
+    /// The gait file cannot be read.
+    pub fn load(spec: &GaitSpec) -> Result<Self, Error> {
+        Ok(Self {
+            curve: spec.load()?,
+            spec: spec.clone(),
+        })
+    }
+
+    /// A gait that has no file.
+    pub fn unnamed(curve: AnyGait) -> Self {
+        let spec = GaitSpec::File {
+            path: "the gait".into(),
+            reversed: false,
+        };
+        Self { spec, curve }
+    }
+}
+
 /// Reads the track of a single run and evaluates its cycles.
 ///
 /// # Errors
-/// The track cannot be read, or has no cycles.
+/// The track cannot be read, or has no cycles; or the swimmer is no robot.
 pub fn single(
     track: &Path,
-    gait: &GaitSpec,
+    gait: &StatedGait,
     period_s: f64,
     swimmer: &SwimmerFile,
     options: &TrackOptions,
@@ -179,12 +211,14 @@ pub fn single(
             options.pairs.push([x.clone(), y.clone()]);
         }
     }
+    crate::check_robots_drag(swimmer)?;
     let length = swimmer.swimmer.links.middle;
     options.used = Some(link.reflectors(length).map_or_else(
         || UsedPoints::usual(length),
         |reflectors| UsedPoints::of(&reflectors),
     ));
-    let data = load_run(track, gait, period_s, &options)?;
+    let name = gait.spec.to_string();
+    let data = load_run_of(track, gait.curve.clone(), name, period_s, &options)?;
     let reflectors = link
         .reflectors(length)
         .unwrap_or_else(|| usual_reflectors(&data.track, &swimmer.swimmer));
@@ -194,7 +228,7 @@ pub fn single(
     let file = track.display();
     warnings.extend(doubts.into_iter().map(|doubt| format!("{file}: {doubt}")));
     Ok(Run {
-        output: RunOutput::new(&result, gait, Path::new("")),
+        output: RunOutput::new(&result, &gait.spec, Path::new("")),
         result,
         warnings,
     })

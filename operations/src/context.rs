@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::Cancel;
+
 /// Access to files by path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Files {
@@ -60,6 +62,8 @@ pub struct Context {
     pub clock: Option<fn() -> f64>,
     /// Receiver of progress.
     pub watch: Watch,
+    /// Request of the caller to end the computation.
+    pub cancel: Cancel,
 }
 
 impl Context {
@@ -71,6 +75,7 @@ impl Context {
             threads: 1,
             clock: None,
             watch: Box::new(|_| ()),
+            cancel: Cancel::default(),
         }
     }
 
@@ -87,15 +92,19 @@ impl Context {
         self.warnings.push(warning.into());
     }
 
-    /// Runs a stage, which reports the completed share, and measures its duration.
+    /// Runs a stage, which reports the completed share, and measures its duration. A request to cancel ends it when it reports.
     pub(crate) fn timed<T>(
         &self,
         stage: Stage,
         compute: impl FnOnce(&(dyn Fn(f64) + Sync)) -> T,
     ) -> Timed<T> {
+        self.cancel.check();
         let begun = self.clock.map(|clock| clock());
         (self.watch)(Progress::Begin(stage));
-        let result = compute(&|share| (self.watch)(Progress::Share(share)));
+        let result = compute(&|share| {
+            self.cancel.check();
+            (self.watch)(Progress::Share(share));
+        });
         (self.watch)(Progress::End);
         let ended = self.clock.map(|clock| clock());
         Timed {

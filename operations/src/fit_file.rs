@@ -1,11 +1,48 @@
-//! Uncertainty that a fit leaves, from the file of `swimmer calibrate`.
+//! Uncertainty that a fit leaves, from the document of `swimmer calibrate`.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use gait_optimizer::Uncertainty;
 use serde::Deserialize;
+use serde_json::Value;
 
 use crate::{Context, Error, Files};
+
+/// A fit: its file, or its document.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(from = "PathBuf")]
+pub enum FitSource {
+    /// Path of the JSON document.
+    File(PathBuf),
+    /// The JSON document itself.
+    Document(Value),
+}
+
+impl From<PathBuf> for FitSource {
+    fn from(path: PathBuf) -> Self {
+        Self::File(path)
+    }
+}
+
+impl FitSource {
+    /// The uncertainty that the fit leaves.
+    ///
+    /// # Errors
+    /// As [`load`]; or the document is no fit.
+    pub fn uncertainty(&self, context: &mut Context) -> Result<Uncertainty, Error> {
+        match self {
+            Self::File(path) => load(path, context),
+            Self::Document(document) => {
+                let fit = Fit::deserialize(document).map_err(|error| {
+                    Error::refused(format!(
+                        "{error}; a fit is the result of calibrating a campaign"
+                    ))
+                })?;
+                of_fit(&fit, context)
+            }
+        }
+    }
+}
 
 /// Part of a fit that is read.
 #[derive(Debug, Deserialize)]
@@ -86,6 +123,10 @@ pub fn load(path: &Path, context: &mut Context) -> Result<Uncertainty, Error> {
             error.column()
         ))
     })?;
+    of_fit(&fit, context)
+}
+
+fn of_fit(fit: &Fit, context: &mut Context) -> Result<Uncertainty, Error> {
     let further = fit.further.as_ref();
     let further = further.and_then(|further| further.uncertainty(context));
     let uncertainty = further.unwrap_or(Uncertainty {

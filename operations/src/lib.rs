@@ -19,6 +19,7 @@ pub mod atlas;
 pub mod best_waveform;
 pub mod bounds;
 pub mod calibrate;
+mod cancel;
 pub mod catalogue;
 pub mod certify;
 mod context;
@@ -36,9 +37,12 @@ mod source;
 #[cfg(feature = "sweeps")]
 pub mod sweep;
 pub mod text;
+pub mod tracks;
 
+pub use cancel::Cancel;
 pub use context::{Context, Files, Progress, Stage, Watch};
 pub use error::{Error, ErrorKind};
 pub use source::{
-    GaitSource, Subject, SwimmerSource, model, warn_if_for_another, warn_if_outdated,
+    GaitSource, Subject, SwimmerSource, check_robots_drag, model, warn_if_doubtful,
+    warn_if_for_another, warn_if_outdated,
 };

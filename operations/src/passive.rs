@@ -8,7 +8,7 @@ use swimmer_files::{GaitFile, GaitSpec, JointName, PassiveFile, Spring, SwimmerF
 use swimmer_model::{Gait, Model};
 
 use crate::source::curve;
-use crate::{Context, Error, GaitSource, Subject, SwimmerSource, model};
+use crate::{Context, Error, GaitSource, Subject, SwimmerSource, model, warn_if_for_another};
 
 /// Largest amplitude of `sine:AMPLITUDE` \[rad\].
 const LARGEST_AMPLITUDE: f64 = std::f64::consts::PI;
@@ -25,7 +25,12 @@ pub enum Drive {
     },
     /// A gait. With a passive joint only the other joint of it is driven.
     Gait(GaitSpec),
+    /// The same as samples.
+    Samples(Box<GaitFile>),
 }
+
+/// Name of samples in messages.
+const UNNAMED: &str = "the gait";
 
 impl FromStr for Drive {
     type Err = String;
@@ -61,6 +66,7 @@ impl Drive {
                 circle.readable().replacen("circle", "sine", 1)
             }
             Self::Gait(spec) => spec.readable(),
+            Self::Samples(_) => UNNAMED.to_owned(),
         }
     }
 }
@@ -70,6 +76,7 @@ impl fmt::Display for Drive {
         match self {
             Self::Sine { amplitude } => write!(f, "sine:{amplitude:?}"),
             Self::Gait(spec) => spec.fmt(f),
+            Self::Samples(_) => f.write_str(UNNAMED),
         }
     }
 }
@@ -148,6 +155,10 @@ impl Subject {
                 let gait = GaitSource::from(spec.clone()).load_for(&file, context)?;
                 respond(&model, &gait, passive)?
             }
+            Drive::Samples(samples) => {
+                warn_if_for_another(&file, samples, UNNAMED, context);
+                respond(&model, &curve(samples)?, passive)?
+            }
         };
         let (samples, response) = response;
         Ok(Self {
@@ -169,19 +180,28 @@ impl Subject {
         drive: &Drive,
         context: &mut Context,
     ) -> Result<Self, Error> {
-        let Drive::Gait(spec) = drive else {
-            return Err(Error::refused(format!(
-                "{drive} drives one joint: name the passive one by --passive front or --passive back, and its spring by --stiffness \
-                 or --relaxation"
-            )));
+        let (gait, named) = match drive {
+            Drive::Sine { .. } => {
+                return Err(Error::refused(format!(
+                    "{drive} drives one joint: name the passive one by --passive front or --passive back, and its spring by \
+                     --stiffness or --relaxation"
+                )));
+            }
+            Drive::Gait(spec) => {
+                let source = GaitSource::from(spec.clone());
+                let gait = source.load_for(&file, context)?;
+                let named = match spec {
+                    GaitSpec::File { .. } => source.file(context.files)?.passive,
+                    GaitSpec::Circle { .. } | GaitSpec::Square { .. } => None,
+                };
+                (gait, named)
+            }
+            Drive::Samples(samples) => {
+                warn_if_for_another(&file, samples, UNNAMED, context);
+                (curve(samples)?, samples.passive)
+            }
         };
-        let source = GaitSource::from(spec.clone());
-        let gait = source.load_for(&file, context)?;
         let model = model(&file)?;
-        let named = match spec {
-            GaitSpec::File { .. } => source.file(context.files)?.passive,
-            GaitSpec::Circle { .. } | GaitSpec::Square { .. } => None,
-        };
         let response = named
             .map(|named| {
                 let joint = named.joint.0;

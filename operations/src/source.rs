@@ -6,28 +6,50 @@ use nalgebra::Vector2;
 use serde::Deserialize;
 use serde_json::Value;
 use swimmer_files::{AnyGait, GaitFile, GaitSpec, GaitSpecError, Provenance, SwimmerFile};
-use swimmer_model::Model;
+use swimmer_model::{InvalidSwimmer, Model};
 
 use crate::passive::Response;
 use crate::{Context, Error, Files};
 
-/// A swimmer: the name of a preset, the path of a swimmer file, or the text of one.
-#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
-pub struct SwimmerSource(String);
+/// A swimmer: the name of a preset, the path of a swimmer file, the text of one, or its content.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(from = "String")]
+pub enum SwimmerSource {
+    /// The name of a preset, a path, or the text of a file, which has several lines.
+    Text(String),
+    /// Content of a swimmer file that was loaded before.
+    Loaded(Box<SwimmerFile>),
+}
+
+impl From<String> for SwimmerSource {
+    fn from(text: String) -> Self {
+        Self::Text(text)
+    }
+}
 
 impl From<&str> for SwimmerSource {
     fn from(text: &str) -> Self {
-        Self(text.to_owned())
+        Self::Text(text.to_owned())
+    }
+}
+
+impl From<SwimmerFile> for SwimmerSource {
+    fn from(file: SwimmerFile) -> Self {
+        Self::Loaded(Box::new(file))
     }
 }
 
 impl SwimmerSource {
-    /// Reads the swimmer. Warns of doubtful values, and if the file was fitted from data that changed since.
+    /// Reads the swimmer, if it is not loaded. Warns then of doubtful values, and if the file was fitted from data that changed
+    /// since.
     ///
     /// # Errors
     /// The file cannot be read or is invalid.
     pub fn load(&self, context: &mut Context) -> Result<SwimmerFile, Error> {
-        let Self(text) = self;
+        let text = match self {
+            Self::Loaded(file) => return Ok(SwimmerFile::clone(file)),
+            Self::Text(text) => text,
+        };
         let file = if let Some(preset) = SwimmerFile::preset(text) {
             preset
         } else if text.contains('\n') || context.files == Files::Unavailable {
@@ -37,11 +59,26 @@ impl SwimmerSource {
             warn_if_outdated(Path::new(text), context)?;
             file
         };
-        for doubt in file.doubts() {
-            context.warn(format!("warning: {}: {doubt}", file.name));
-        }
+        warn_if_doubtful(&file, context);
         Ok(file)
     }
+}
+
+/// Warns of doubtful values of a swimmer.
+pub fn warn_if_doubtful(file: &SwimmerFile, context: &mut Context) {
+    for doubt in file.doubts() {
+        context.warn(format!("warning: {}: {doubt}", file.name));
+    }
+}
+
+/// Refuses a swimmer that is no robot: a robot, its twin and a fit know the paper's parameters only
+/// ([`common_drag`](swimmer_model::Swimmer::common_drag)).
+///
+/// # Errors
+/// The links have a drag of their own.
+pub fn check_robots_drag(file: &SwimmerFile) -> Result<(), Error> {
+    let reason = file.swimmer.common_drag();
+    reason.map_err(|reason| Error::bad_input(&InvalidSwimmer::Uncommon(reason)))
 }
 
 /// Warns if the data from which a swimmer file was fitted have changed since.

@@ -41,10 +41,10 @@ pub(crate) struct Atlas {
     #[command(flatten)]
     bounds: CycleBounds,
     /// Number of random starts; known gaits are additional starts and not counted here
-    #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(long, value_name = "N", default_value_t = atlas::STARTS, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     starts: u32,
     /// Seed of the starts
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = atlas::SEED)]
     seed: u64,
     /// Follow the gaits as a parameter changes from FROM to TO: max-angle (an angle), chi, sphere (radius in metres) or
     /// link-ratio (side link over middle link, at the same total length)
@@ -53,13 +53,13 @@ pub(crate) struct Atlas {
     /// overtake each other, optima that are lost. Efficiency: the atlas is made at FROM and its two best gaits are followed;
     /// with --gait the named ones instead, without an atlas. Displacement: the two gaits with the paper's symmetries that
     /// carry farthest (where there are two), without an atlas.
-    #[arg(long = "continue", value_name = "PARAMETER=FROM..TO", value_parser = continuation::way)]
-    way: Option<continuation::Way>,
+    #[arg(long = "continue", value_name = "PARAMETER=FROM..TO")]
+    way: Option<atlas::continuation::Range>,
     /// Efficiency gait to follow with --continue; may be given twice, to compare both
     #[arg(long, value_name = "GAIT", requires = "way")]
     gait: Vec<continuation::Named>,
     /// Equal steps to follow gaits in; smaller ones are taken where they must be
-    #[arg(long, value_name = "N", default_value_t = 20, requires = "way", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    #[arg(long, value_name = "N", default_value_t = atlas::continuation::STEPS, requires = "way", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     steps: u32,
     /// Put every gait as a gait file and a picture of them all into this folder
     #[arg(short, long, value_name = "DIR")]

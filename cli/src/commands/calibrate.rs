@@ -8,14 +8,16 @@ mod text;
 
 use std::path::{Path, PathBuf};
 
-use calibrate::EvidenceOptions;
-use operations::calibrate::{Fitted, LEVEL, MiddleLink, RunsOutput, single};
+use operations::SwimmerSource;
+use operations::calibrate::campaign::{self, Step};
+use operations::calibrate::{Fitted, LEVEL, MiddleLink, RunsOutput, StatedGait, single};
 use swimmer_files::{GaitSpec, PointName};
 
 use self::beyond_fit::BeyondFit;
 pub(crate) use self::beyond_fit::ResultTable;
+pub(crate) use self::folder::write as write_folder;
 use self::text::{FitText, RunsText};
-use crate::arguments::{gait, load_robots_swimmer, seconds};
+use crate::arguments::{gait, seconds};
 use crate::context::perform;
 use crate::failure::{Failure, Outcome};
 use crate::new_folder::NewFolder;
@@ -119,26 +121,27 @@ impl Calibrate {
             ASSESSING,
             if folder.is_some() { WRITING } else { 0.0 },
         ]);
-        stages.next("reading the tracks, fitting r_s and χ", FITTING);
-        let mut fitted = fit_campaign(&self.file, self.level)?;
-        self.beyond.compute(&mut fitted, &mut stages)?;
-        let options = EvidenceOptions::default();
-        stages.next("weighing the evidence", WEIGHING);
-        let weighed = fitted.weigh_evidence(options).map(|_| ());
-        stages.next("assessing the fit", ASSESSING);
-        let of_folder = self.file.parent().unwrap_or_else(|| Path::new(""));
-        let assessed = fitted.assess(|file| {
-            let path = file.strip_prefix(of_folder).unwrap_or(file);
-            path.display().to_string()
-        })?;
+        let request = campaign::Request {
+            file: self.file,
+            level: self.level,
+            fit_also: self.beyond.fit_also,
+            advise: self.beyond.advise,
+        };
+        let begin = |step| match step {
+            Step::Fit => stages.next("reading the tracks, fitting r_s and χ", FITTING),
+            Step::FitFurther => stages.next("fitting more parameters", beyond_fit::FITTING),
+            Step::Advise => stages.next("weighing what to measure next", beyond_fit::ADVISING),
+            Step::WeighEvidence => stages.next("weighing the evidence", WEIGHING),
+            Step::Assess => stages.next("assessing the fit", ASSESSING),
+        };
+        let calibrated = perform(|context| campaign::run(&request, context, begin))?;
         if let Some(folder) = folder {
             stages.next("writing report and tables", WRITING);
-            weighed?;
-            let systematics = assessed.systematics.as_ref();
-            folder::write(&fitted, systematics, options, &self.file, &folder)?;
+            write_folder(&calibrated, &request.file, &folder)?;
             folder.publish()?;
         }
         drop(stages);
+        let fitted = &calibrated.fitted;
         output.rendered(&fitted.output, &FitText(&fitted.output));
         Ok(())
     }
@@ -161,14 +164,15 @@ impl Calibrate {
                 "{flag} goes with a campaign: a single run is not fitted"
             )));
         }
-        let swimmer = load_robots_swimmer(swimmer)?;
+        let swimmer = perform(|context| SwimmerSource::from(swimmer.as_str()).load(context))?;
         let link = MiddleLink {
             front: self.front,
             back: self.back,
             body: self.body,
         };
         let options = self.recording.options();
-        let run = single(&self.file, gait, period_s, &swimmer, &options, &link)?;
+        let gait = StatedGait::load(gait)?;
+        let run = single(&self.file, &gait, period_s, &swimmer, &options, &link)?;
         let runs = RunsOutput {
             runs: vec![run.output],
             warnings: run.warnings,

@@ -14,7 +14,7 @@ use gait_optimizer::{Bounds, DisplacementProblem, OptimalGait, displacement};
 use host_link::LinkError;
 use link_protocol::Refusal;
 use operations::ErrorKind;
-use operations::calibrate::{Fitted, MiddleLink, Run, single};
+use operations::calibrate::{Fitted, MiddleLink, Run, StatedGait, single};
 use operations::optimize::searched;
 use swimmer_files::{
     AnyGait, Campaign, GaitSpec, Provenance, ServoFile, SwimmerFile, write_atomically,
@@ -217,10 +217,10 @@ impl<'a> Round<'a> {
             predict(&fitted, &best_gait, period_s).map_err(|error| Failure::tried(&error))?;
         let swum = single(
             &track,
-            &GaitSpec::File {
+            &StatedGait::load(&GaitSpec::File {
                 path: self.draft.join(BEST),
                 reversed: false,
-            },
+            })?,
             period_s,
             &fitted,
             &TrackOptions::default(),

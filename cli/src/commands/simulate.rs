@@ -126,7 +126,7 @@ impl Simulate {
     pub(crate) fn run(self, output: Output) -> Outcome {
         self.trajectory.as_deref().map_or(Ok(()), may_be_written)?;
         self.output.as_deref().map_or(Ok(()), may_be_written)?;
-        let kind = self.picture.as_deref().map(picture_kind).transpose()?;
+        let picture = self.picture.clone().map(Picture::new).transpose()?;
         let mut context = Context::on_disk();
         let subject = Subject::load_driven(
             &SwimmerSource::from(self.swimmer.as_str()),
@@ -150,46 +150,62 @@ impl Simulate {
             samples.save(path)?;
             simulated.gait = Some(path.clone());
         }
-        let Subject {
-            file,
-            model,
-            gait,
-            response,
-            ..
-        } = subject;
-        simulated.trajectory.clone_from(&self.trajectory);
-        simulated.picture.clone_from(&self.picture);
-        let title = format!("{}, {}", file.name, self.gait.readable());
+        let name = self.gait.readable();
         if let Some(path) = &self.trajectory {
-            write_trajectory(path, &model, &gait, self.cycles)?;
+            write_trajectory(path, &subject.model, &subject.gait, self.cycles)?;
+            simulated.trajectory = Some(path.clone());
         }
-        if let (Some(path), Some(kind)) = (&self.picture, kind) {
-            let cycles = if kind == Kind::Gif { 1 } else { self.cycles };
-            let over_length = number(simulated.net.displacement_over_length, 4);
-            let caption = format!("{title}: X/L = {over_length} a cycle");
-            let swimming = Swimming::in_the_model(caption, &model, &gait, cycles);
-            match kind {
-                Kind::Gif => write_atomically(path, &animation(&swimming)?)?,
-                kind => kind.write(path, &snapshots(&swimming))?,
-            }
+        if let Some(picture) = &picture {
+            picture.draw(&subject, &name, self.cycles, &mut simulated)?;
         }
+        let title = format!("{}, {name}", subject.file.name);
         output.rendered(
             &simulated,
             &Text {
                 title: &title,
                 output: &simulated,
-                response,
+                response: subject.response,
             },
         );
         Ok(())
     }
 }
 
-/// Format of a picture by its file name, checked before anything is computed.
-fn picture_kind(path: &Path) -> Outcome<Kind> {
-    let kind = Kind::of(path, &[Kind::Svg, Kind::Png, Kind::Pdf, Kind::Gif])?;
-    may_be_written(path)?;
-    Ok(kind)
+/// New picture of a swimmer in motion.
+#[derive(Debug)]
+pub(crate) struct Picture {
+    path: PathBuf,
+    kind: Kind,
+}
+
+impl Picture {
+    /// The format is that of the file name, checked before anything is computed.
+    pub(crate) fn new(path: PathBuf) -> Outcome<Self> {
+        let kind = Kind::of(&path, &[Kind::Svg, Kind::Png, Kind::Pdf, Kind::Gif])?;
+        may_be_written(&path)?;
+        Ok(Self { path, kind })
+    }
+
+    /// Draws a simulated gait of this name, and names the file in the output.
+    pub(crate) fn draw(
+        &self,
+        subject: &Subject,
+        gait: &str,
+        cycles: u32,
+        simulated: &mut simulate::Output,
+    ) -> Outcome {
+        let Self { path, kind } = self;
+        let cycles = if *kind == Kind::Gif { 1 } else { cycles };
+        let over_length = number(simulated.net.displacement_over_length, 4);
+        let caption = format!("{}, {gait}: X/L = {over_length} a cycle", subject.file.name);
+        let swimming = Swimming::in_the_model(caption, &subject.model, &subject.gait, cycles);
+        match kind {
+            Kind::Gif => write_atomically(path, &animation(&swimming)?)?,
+            kind => kind.write(path, &snapshots(&swimming))?,
+        }
+        simulated.picture = Some(path.clone());
+        Ok(())
+    }
 }
 
 /// Path of the picture; for an animation also its size and frame rate.

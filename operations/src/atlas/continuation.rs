@@ -1,11 +1,13 @@
 //! Gaits that are followed as a parameter changes.
 
+use std::str::FromStr;
+
 use gait_optimizer::{
     ArcKind, Atlas, Bounds, Branch, Continuation, ContinuationError, ContinuationProblem, Event,
     Heading, Parameter, Point, Start, continuation,
 };
 use serde::{Deserialize, Serialize};
-use swimmer_files::Objective;
+use swimmer_files::{Objective, parse_angle};
 use swimmer_model::Swimmer;
 
 use crate::Error;
@@ -15,6 +17,44 @@ use crate::optimize::efficiency::Optimum;
 const MOST_GAITS: usize = 2;
 /// Samples of a followed gait.
 const SAMPLES: usize = 512;
+
+/// Parameter with its range.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Range {
+    /// Parameter.
+    pub parameter: Parameter,
+    /// First value.
+    pub from: f64,
+    /// Last value.
+    pub to: f64,
+}
+
+impl FromStr for Range {
+    type Err = String;
+
+    /// Reads `max-angle=2.8..2.0` and the like.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let form = || {
+            "write a parameter and its range as max-angle=2.8..2.0, chi=2..1.5, sphere=0.07..0 or link-ratio=1..2"
+                .to_owned()
+        };
+        let (name, range) = text.split_once('=').ok_or_else(form)?;
+        let (from, to) = range.split_once("..").ok_or_else(form)?;
+        let parameter = parameter_of_word(name).ok_or_else(form)?;
+        let value = |text: &str| match parameter {
+            Parameter::MaxAngle => parse_angle(text).map_err(|error| error.to_string()),
+            _ => text.parse().map_err(|_| form()),
+        };
+        Ok(Self {
+            parameter,
+            from: value(from)?,
+            to: value(to)?,
+        })
+    }
+}
+
+/// Number of steps, unless the user sets one.
+pub const STEPS: u32 = 20;
 
 /// Parameter with its range, and the gaits to follow.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -40,7 +80,7 @@ fn parameter<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Parame
 }
 
 /// Parameter by its name on the command line.
-pub fn parameter_of_word(word: &str) -> Option<Parameter> {
+fn parameter_of_word(word: &str) -> Option<Parameter> {
     let all = [
         Parameter::MaxAngle,
         Parameter::Chi,
@@ -229,6 +269,24 @@ impl From<ContinuationError> for Error {
             Self::bad_input(&error)
         } else {
             Self::failed(&error)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_are_read() {
+        let read: Range = "max-angle=160deg..2.0".parse().unwrap();
+        assert_eq!(read.parameter, Parameter::MaxAngle);
+        assert!((read.from - 160.0_f64.to_radians()).abs() < 1e-12);
+        assert!((read.to - 2.0).abs() < 1e-15);
+        let sphere: Range = "sphere=0.07..0".parse().unwrap();
+        assert_eq!(sphere.parameter, Parameter::SphereRadius);
+        for text in ["chi", "chi=2", "chi=2..x", "mass=1..2", "=1..2", ""] {
+            assert!(text.parse::<Range>().is_err(), "{text}");
         }
     }
 }

@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use calibrate::{CampaignData, RunResult, amplitude_by_sway, other_gaits, predict};
-use swimmer_files::{Campaign, GaitSpec, SwimmerFile};
+use swimmer_files::{Campaign, SwimmerFile};
 
+use super::StatedGait;
 use crate::text;
 
 /// Relative deviation of the amplitude that fits the sway of a single run, above which the run belongs to another gait. The swimmer
@@ -37,15 +38,13 @@ pub(super) fn of_campaign(
 /// Evidence against the stated gait of a single run.
 pub(super) fn of_single(
     run: &RunResult,
-    gait: &GaitSpec,
+    stated: &StatedGait,
     period_s: f64,
     swimmer: &SwimmerFile,
 ) -> Vec<String> {
     let mut doubts = Vec::new();
-    let predicted = gait
-        .load()
-        .ok()
-        .and_then(|gait| predict(swimmer, &gait, period_s).ok());
+    let gait = &stated.spec;
+    let predicted = predict(swimmer, &stated.curve, period_s).ok();
     if let Some(predicted) = predicted
         && predicted.x_m * run.cycles.x.mean < 0.0
     {

@@ -1,7 +1,5 @@
 //! Gaits for an uncertain swimmer: best in the worst case, or in the mean.
 
-use std::path::PathBuf;
-
 use gait_optimizer::{
     Condition, Objective, OptimalGait, Over, RobustError, RobustGait, Robustness, Uncertainty,
     Values, WorstCaseMember,
@@ -13,7 +11,8 @@ use swimmer_model::{Gait as _, Model};
 use super::timing::{self, TimedGait};
 use super::{EfficiencyFigures, GaitOutput, Quarter, warn_if_beyond};
 use crate::bounds::BoundsRequest;
-use crate::{Context, Error, fit_file};
+use crate::fit_file::FitSource;
+use crate::{Context, Error};
 
 /// Evenly spaced instants of a cycle at which the power is evaluated.
 const INSTANTS: u32 = 1024;
@@ -52,8 +51,8 @@ impl From<Over> for Statistic {
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(default)]
 pub struct Request {
-    /// File of a fit, whose intervals of the sphere's radius, χ and the servos' gain count.
-    pub fit: Option<PathBuf>,
+    /// A fit, whose intervals of the sphere's radius, χ and the servos' gain count.
+    pub fit: Option<FitSource>,
     /// Interval of the servos' gain, actual over commanded angle, in place of that of the fit.
     pub gain: Option<[f64; 2]>,
     /// Statistic to maximise.
@@ -71,7 +70,7 @@ impl Request {
         context: &mut Context,
     ) -> Result<Uncertainty, Error> {
         let mut uncertainty = match &self.fit {
-            Some(path) => fit_file::load(path, context)?,
+            Some(fit) => fit.uncertainty(context)?,
             None => Uncertainty::none(file.swimmer.sphere_radius, file.swimmer.chi),
         };
         uncertainty.gain_interval = self.gain.unwrap_or(uncertainty.gain_interval);

@@ -1,39 +1,10 @@
 //! Gaits that are followed as a parameter changes: `--continue`, and their text.
 
 use clap::ValueEnum;
-use gait_optimizer::{ArcKind, EventKind, Fold, Parameter};
-use operations::atlas::continuation::{Output, parameter_of_word};
+use gait_optimizer::{ArcKind, EventKind, Fold};
+use operations::atlas::continuation::Output;
 
-use crate::arguments::angle;
 use crate::quantity;
-
-/// Parameter of a continuation, with its range.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Way {
-    pub(super) parameter: Parameter,
-    pub(super) from: f64,
-    pub(super) to: f64,
-}
-
-/// Reads `max-angle=2.8..2.0` and the like.
-pub(super) fn way(text: &str) -> Result<Way, String> {
-    let form = || {
-        "write a parameter and its range as max-angle=2.8..2.0, chi=2..1.5, sphere=0.07..0 or link-ratio=1..2"
-            .to_owned()
-    };
-    let (name, range) = text.split_once('=').ok_or_else(form)?;
-    let (from, to) = range.split_once("..").ok_or_else(form)?;
-    let parameter = parameter_of_word(name).ok_or_else(form)?;
-    let value = |text: &str| match parameter {
-        Parameter::MaxAngle => angle(text),
-        _ => text.parse().map_err(|_| form()),
-    };
-    Ok(Way {
-        parameter,
-        from: value(from)?,
-        to: value(to)?,
-    })
-}
 
 /// Gaits that have a name.
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -120,25 +91,5 @@ fn happened(kind: &EventKind) -> String {
         EventKind::Lost { failed } => format!("no optimum beyond: fails {failed}"),
         EventKind::Ended { reason, exponent } => format!("ends: {reason}{}", power(exponent)),
         EventKind::Reached => "followed to here".to_owned(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn ways_are_read() {
-        let read = way("max-angle=160deg..2.0").unwrap();
-        assert_eq!(read.parameter, Parameter::MaxAngle);
-        assert!((read.from - 160.0_f64.to_radians()).abs() < 1e-12);
-        assert!((read.to - 2.0).abs() < 1e-15);
-        assert_eq!(
-            way("sphere=0.07..0").unwrap().parameter,
-            Parameter::SphereRadius
-        );
-        for text in ["chi", "chi=2", "chi=2..x", "mass=1..2", "=1..2", ""] {
-            assert!(way(text).is_err(), "{text}");
-        }
     }
 }

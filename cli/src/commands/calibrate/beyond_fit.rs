@@ -4,10 +4,8 @@ use std::fmt;
 
 use calibrate::{Advice, NuisanceFit, NuisanceParameter};
 use clap::builder::{PossibleValuesParser, TypedValueParser as _};
-use operations::calibrate::{Fitted, Output};
+use operations::calibrate::Output;
 
-use crate::failure::Outcome;
-use crate::progress::Stages;
 use crate::quantity::{self, Table};
 
 /// Options for computations beyond the fit.
@@ -19,15 +17,15 @@ pub(super) struct BeyondFit {
     /// lengths (of the links), float (its rotational drag over a sphere's), tilt (of the cameras), distortion (of the lens), walls
     /// (of the tank, if the campaign states it). Warns if the runs cannot distinguish them
     #[arg(long, value_name = "WHAT,…", value_delimiter = ',', value_parser = PossibleValuesParser::new(NuisanceParameter::ALL.map(NuisanceParameter::word)).try_map(|word| further(&word)))]
-    fit_also: Vec<NuisanceParameter>,
+    pub(super) fit_also: Vec<NuisanceParameter>,
     /// Rank what to measure next by how much one run of it would narrow the intervals
     #[arg(long)]
-    advise: bool,
+    pub(super) advise: bool,
 }
 
 /// Usual durations, seconds, as measured on nine runs.
-const FITTING: f64 = 1.6;
-const ADVISING: f64 = 0.9;
+pub(super) const FITTING: f64 = 1.6;
+pub(super) const ADVISING: f64 = 0.9;
 
 fn further(word: &str) -> Result<NuisanceParameter, String> {
     NuisanceParameter::of_word(word).ok_or_else(|| format!("there is no `{word}`"))
@@ -43,7 +41,7 @@ impl BeyondFit {
         }
     }
 
-    /// Usual duration of [`Self::compute`], seconds, as measured on nine runs.
+    /// Usual duration, seconds, as measured on nine runs.
     pub(super) fn weight(&self) -> f64 {
         let further = if self.fit_also.is_empty() {
             0.0
@@ -51,19 +49,6 @@ impl BeyondFit {
             FITTING
         };
         further + if self.advise { ADVISING } else { 0.0 }
-    }
-
-    /// Computes the requested options.
-    pub(super) fn compute(&self, fitted: &mut Fitted, stages: &mut Stages) -> Outcome {
-        if !self.fit_also.is_empty() {
-            stages.next("fitting more parameters", FITTING);
-            fitted.fit_also(&self.fit_also)?;
-        }
-        if self.advise {
-            stages.next("weighing what to measure next", ADVISING);
-            fitted.advise()?;
-        }
-        Ok(())
     }
 }
 

@@ -2,9 +2,8 @@
 
 use std::path::Path;
 
-use calibrate::EvidenceOptions;
-use calibrate::assessment::Systematics;
 use operations::calibrate::Fitted;
+use operations::calibrate::campaign::Calibrated;
 use swimmer_files::{Campaign, Provenance, write_atomically};
 
 use crate::failure::{Failure, Outcome};
@@ -22,20 +21,17 @@ const REPORT: &str = "report.html";
 ///
 /// # Errors
 /// Errors of hashing the inputs and of writing.
-pub(super) fn write(
-    fitted: &Fitted,
-    systematics: Option<&Systematics>,
-    options: EvidenceOptions,
-    file: &Path,
-    folder: &NewFolder,
-) -> Outcome {
+pub(crate) fn write(calibrated: &Calibrated, file: &Path, folder: &NewFolder) -> Outcome {
+    if let Some(reason) = &calibrated.without_evidence {
+        return Err(reason.clone().into());
+    }
     let (draft, place) = (folder.draft(), folder.place());
     let Fitted {
         campaign,
         result: found,
         output,
         evidence: Some(evidence),
-    } = fitted
+    } = &calibrated.fitted
     else {
         return Err(Failure::Tried(
             "the report needs likelihood and profiles, which were not computed".to_owned(),
@@ -44,16 +40,7 @@ pub(super) fn write(
     let made_by = concat!("swimmer calibrate ", env!("CARGO_PKG_VERSION"));
     let provenance = Provenance::of_files(made_by, &Campaign::files(file)?, place)?;
     let save = |name: &str, text: &str| write_atomically(&draft.join(name), text.as_bytes());
-    let recommended = output.assessment.as_ref().map_or_else(
-        || found.swimmer.clone(),
-        |assessment| {
-            let headline = &assessment.headline;
-            found
-                .start
-                .fitted(headline.estimate.sphere_radius, headline.estimate.chi)
-        },
-    );
-    provenance.save_with(&recommended, &draft.join(FITTED))?;
+    provenance.save_with(&calibrated.recommended(), &draft.join(FITTED))?;
     save(FIT, &document(output))?;
     let names: Vec<String> = output.runs.iter().map(|run| run.file.clone()).collect();
     save(EVIDENCE, &document(&evidence.document(&names)))?;
@@ -87,8 +74,8 @@ pub(super) fn write(
         found,
         evidence,
         output,
-        systematics,
-        options,
+        systematics: calibrated.assessment.systematics.as_ref(),
+        options: calibrated.options,
         provenance: &provenance,
         files,
     })?;

@@ -5,7 +5,7 @@ use std::time::Duration;
 use calibrate::{TrackOptions, predict};
 use forecast::shortest_of_table;
 use gait_optimizer::SpeedProblem;
-use operations::calibrate::{MiddleLink, single};
+use operations::calibrate::{MiddleLink, StatedGait, single};
 use serde::Serialize;
 use swimmer_files::{AnyGait, Bounds, GaitFile, GaitSpec, SwimmerFile};
 
@@ -79,7 +79,7 @@ impl Round<'_> {
         };
         let swum = single(
             &track,
-            &spec,
+            &StatedGait::load(&spec)?,
             period_s,
             fitted,
             &TrackOptions::default(),

@@ -4,16 +4,18 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use gait_optimizer::{Fastest, Front};
+use operations::optimize::speed::{FrontOutput, Output};
 use swimmer_files::write_atomically;
 
 use crate::csv_text::csv_text;
 use crate::failure::Outcome;
+use crate::new_file::may_be_written;
 use crate::report::chart::{Chart, INK, MEASURED, PREDICTED, Point, Series};
 
 /// Path of the front, with its form.
 #[derive(Debug, Clone)]
 pub(crate) struct FrontFile {
-    pub(super) path: PathBuf,
+    path: PathBuf,
     form: Form,
 }
 
@@ -38,13 +40,23 @@ impl FromStr for FrontFile {
 }
 
 impl FrontFile {
-    /// Writes the front of a swimmer of this name and total length \[m\].
-    pub(super) fn write(&self, front: &Front, name: &str, length: f64) -> Outcome {
-        let text = match self.form {
-            Form::Figure => figure(front, name, length).svg()?,
-            Form::Table => table(front, length)?,
+    /// Checks that the file may be written.
+    pub(crate) fn may_be_written(&self) -> Outcome {
+        may_be_written(&self.path)
+    }
+
+    /// Writes the front of an output, if it has one, and names the file in the output.
+    pub(crate) fn write(&self, output: &mut Output) -> Outcome {
+        let Some(front) = &output.farthest else {
+            return Ok(());
         };
-        Ok(write_atomically(&self.path, text.as_bytes())?)
+        let text = match self.form {
+            Form::Figure => figure(front, &output.name, output.length).svg()?,
+            Form::Table => table(front, output.length)?,
+        };
+        write_atomically(&self.path, text.as_bytes())?;
+        output.front = Some(FrontOutput::new(self.path.clone(), front));
+        Ok(())
     }
 }
 

@@ -3,7 +3,7 @@
 
 mod displacement;
 mod efficiency;
-mod front;
+pub(crate) mod front;
 mod passive;
 mod robust;
 mod sideways;

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::ValueEnum;
+use operations::fit_file::FitSource;
 use operations::optimize::robust::{Output, Request, RobustnessOutput, Statistic};
 
 use super::text::{add_gait, add_quarter, titled};
@@ -50,7 +51,7 @@ impl Robustly {
             };
         }
         Ok(Some(Request {
-            fit: self.robust.clone(),
+            fit: self.robust.clone().map(FitSource::File),
             gain,
             over: match self.over {
                 None | Some(Which::Worst) => Statistic::Worst,

@@ -1,7 +1,7 @@
 //! `swimmer optimize speed`: the fastest gait that servos can play.
 
 use operations::optimize::GaitOutput;
-use operations::optimize::speed::{self, FrontOutput, Output, Request};
+use operations::optimize::speed::{self, Output, Request};
 use operations::{Context, SwimmerSource};
 
 use super::Objective;
@@ -11,7 +11,6 @@ use super::text::{add_arcs, add_gait, titled};
 use crate::arguments::{rate, seconds};
 use crate::bounds::CycleBounds;
 use crate::failure::Outcome;
-use crate::new_file::may_be_written;
 use crate::quantity::{self, Rows};
 
 /// Find the fastest gait: most net displacement per unit of time, without net rotation, with servos that turn no faster than a
@@ -63,7 +62,7 @@ impl Objective for Speed {
 
     fn search(&self, swimmer: SwimmerSource, context: &mut Context) -> Outcome<Output> {
         if let Some(front) = &self.front {
-            may_be_written(&front.path)?;
+            front.may_be_written()?;
         }
         let request = Request {
             swimmer,
@@ -79,9 +78,8 @@ impl Objective for Speed {
             front: self.front.is_some(),
         };
         let mut output = speed::run(&request, context)?;
-        if let (Some(place), Some(farthest)) = (&self.front, &output.farthest) {
-            place.write(farthest, &output.name, output.length)?;
-            output.front = Some(FrontOutput::new(place.path.clone(), farthest));
+        if let Some(front) = &self.front {
+            front.write(&mut output)?;
         }
         Ok(output)
     }

@@ -110,16 +110,21 @@ impl Search {
         };
         let mut found = perform(|context| steer::run(&request, context))?;
         if let Some(folder) = folder {
-            for gait in &mut found.gaits {
-                let name = format!("{}.gait", gait.name);
-                gait.file.save(&folder.draft().join(&name))?;
-                gait.gait = Some(folder.place().join(name));
-            }
-            folder.publish()?;
+            write_gaits(&mut found, folder)?;
         }
         output.rendered(&found, &text(&found));
         Ok(())
     }
+}
+
+/// Writes the gaits into a folder, and names their files in the output.
+pub(crate) fn write_gaits(output: &mut steer::Output, folder: NewFolder) -> Outcome {
+    for gait in &mut output.gaits {
+        let name = format!("{}.gait", gait.name);
+        gait.file.save(&folder.draft().join(&name))?;
+        gait.gait = Some(folder.place().join(name));
+    }
+    folder.publish()
 }
 
 /// Output as text.
