@@ -1,6 +1,7 @@
 //! Properties of a recording that its file does not state, as flags of the commands that read one.
 
 use calibrate::TrackOptions;
+use operations::tracks;
 use swimmer_files::Axes;
 
 /// Properties of a recording that its file does not state.
@@ -33,6 +34,11 @@ pub(crate) struct LiveAxes {
 }
 
 impl LiveAxes {
+    /// These axes, in this many metres per unit of the source.
+    pub(crate) fn new(scale: Option<f64>, axes: Option<Axes>) -> Self {
+        Self { scale, axes }
+    }
+
     /// Options of the reader.
     pub(crate) fn options(&self) -> TrackOptions {
         TrackOptions {
@@ -44,15 +50,19 @@ impl LiveAxes {
 }
 
 impl Recording {
-    /// Options of the reader.
-    pub(crate) fn options(&self) -> TrackOptions {
-        TrackOptions {
-            metres_per_unit: self.scale,
-            rate_hz: self.rate,
+    /// The same as a part of a request.
+    pub(crate) fn request(&self) -> tracks::Recording {
+        tracks::Recording {
+            scale: self.scale,
+            rate: self.rate,
             axes: self.axes,
             likelihood: self.likelihood,
-            ..TrackOptions::default()
         }
+    }
+
+    /// Options of the reader.
+    pub(crate) fn options(&self) -> TrackOptions {
+        self.request().options()
     }
 
     /// The first flag that was given, for commands that know it from elsewhere.

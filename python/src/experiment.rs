@@ -7,7 +7,7 @@ use pythonize::pythonize;
 use serde::Serialize;
 use swimmer_command::{Experiment, Reply};
 
-use crate::commands::in_thread;
+use crate::computation::in_thread;
 use crate::robot::{RobotSettings, WithNotes, value};
 use crate::signals::Signals;
 
@@ -15,7 +15,7 @@ fn of_thread<T: Serialize + Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> Reply<T> + Send + 'static,
 ) -> PyResult<WithNotes<'_>> {
-    let (output, notes) = value(in_thread(py, work)?)?;
+    let (output, notes) = value(in_thread(py, None, work)?)?;
     Ok((pythonize(py, &output)?, notes))
 }
 

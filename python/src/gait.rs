@@ -13,8 +13,28 @@ use crate::errors::{BadInput, of_file};
 
 /// One cycle of joint angles. It never changes.
 ///
-/// `Gait(phi)` takes samples of one cycle, an array (n, 2) in radians; `u` are their fractions of the period, evenly spaced where
-/// they are left out, and `corners` those of `u` where the direction jumps. A cycle whose last sample is not its first is closed.
+/// Parameters
+/// ----------
+/// phi : array_like
+///     Samples of one cycle [rad], shape (n, 2). If the last sample is not the first one, the cycle is closed.
+/// u : sequence of float, optional
+///     Fractions of the period of the samples; evenly spaced unless given.
+/// corners : sequence of float, optional
+///     Those of `u` at which the direction jumps.
+///
+/// Raises
+/// ------
+/// BadInput
+///     If the samples are no closed curve.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np
+/// >>> import swimmer as sw
+/// >>> t = np.linspace(0, 2 * np.pi, 100, endpoint=False)
+/// >>> gait = sw.Gait(np.column_stack([np.cos(t), np.sin(t)]))
+/// >>> gait.at(0.125).round(4)
+/// array([0.7071, 0.7071])
 #[pyclass(frozen, module = "swimmer")]
 pub(crate) struct Gait {
     /// Its word on the command line; none for samples.
@@ -27,6 +47,11 @@ pub(crate) struct Gait {
 const SAMPLES: usize = 200;
 
 impl Gait {
+    /// Its closed form; `None` for samples.
+    pub(crate) fn word(&self) -> Option<&str> {
+        self.closed_form.as_deref()
+    }
+
     /// Its curve.
     pub(crate) fn curve(&self) -> &AnyGait {
         &self.curve
@@ -42,7 +67,8 @@ impl Gait {
         self.closed_form.as_deref().unwrap_or("the gait")
     }
 
-    fn of_file(file: GaitFile) -> PyResult<Self> {
+    /// A gait from the content of its file.
+    pub(crate) fn of_file(file: GaitFile) -> PyResult<Self> {
         let curve = AnyGait::from_file(&file)
             .map_err(|invalid| BadInput::new_err(format!("a gait from samples: {invalid}")))?;
         Ok(Self {
@@ -121,22 +147,88 @@ impl Gait {
         Self::of_file(read)
     }
 
-    /// Radius `amplitude` in the (φ₁, φ₂) plane [rad], at uniform angle, counter-clockwise from φ₁ = φ₂ > 0 unless `clockwise` is
-    /// set.
+    /// Returns a circle in the plane of joint angles, at uniform speed from φ₁ = φ₂ > 0.
+    ///
+    /// Parameters
+    /// ----------
+    /// amplitude : float
+    ///     Radius [rad].
+    /// clockwise : bool, optional
+    ///     With True, runs clockwise.
+    ///
+    /// Returns
+    /// -------
+    /// Gait
+    ///     The gait.
+    ///
+    /// Raises
+    /// ------
+    /// BadInput
+    ///     If the amplitude is no angle.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import swimmer as sw
+    /// >>> sw.Gait.circle(1.2)
+    /// <Gait circle:1.2>
     #[staticmethod]
     #[pyo3(signature = (amplitude, *, clockwise=false))]
     fn circle(amplitude: f64, clockwise: bool) -> PyResult<Self> {
         Self::closed("circle", amplitude, clockwise)
     }
 
-    /// Corners (±`amplitude`, ±`amplitude`) [rad], at constant speed along each edge; otherwise as a circle.
+    /// Returns a square with corners (±`amplitude`, ±`amplitude`), at uniform speed along each edge from φ₁ = φ₂ > 0.
+    ///
+    /// Parameters
+    /// ----------
+    /// amplitude : float
+    ///     Half edge [rad].
+    /// clockwise : bool, optional
+    ///     With True, runs clockwise.
+    ///
+    /// Returns
+    /// -------
+    /// Gait
+    ///     The gait.
+    ///
+    /// Raises
+    /// ------
+    /// BadInput
+    ///     If the amplitude is no angle.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import swimmer as sw
+    /// >>> sw.Gait.square(1.2, clockwise=True)
+    /// <Gait square:1.2:cw>
     #[staticmethod]
     #[pyo3(signature = (amplitude, *, clockwise=false))]
     fn square(amplitude: f64, clockwise: bool) -> PyResult<Self> {
         Self::closed("square", amplitude, clockwise)
     }
 
-    /// A gait file, or what `--gait` takes: `circle:70deg`, `square:1.2`, `best.gait`, each with `:cw` to reverse it.
+    /// Reads a gait file, or returns a closed form.
+    ///
+    /// Parameters
+    /// ----------
+    /// gait : str or path
+    ///     Path of a gait file, ``circle:70deg`` or ``square:1.2``; ``:cw`` at the end reverses it.
+    ///
+    /// Returns
+    /// -------
+    /// Gait
+    ///     The gait.
+    ///
+    /// Raises
+    /// ------
+    /// BadInput
+    ///     If the file cannot be read or is invalid.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import swimmer as sw
+    /// >>> sw.Gait.load("circle:70deg").phi.shape
+    /// (201, 2)
     #[staticmethod]
     fn load(gait: PathBuf) -> PyResult<Self> {
         let spec = match gait.to_str() {
@@ -153,7 +245,29 @@ impl Gait {
         Self::of_spec(&spec)
     }
 
-    /// The text of a gait file.
+    /// Reads the text of a gait file.
+    ///
+    /// Parameters
+    /// ----------
+    /// text : str
+    ///     Content of a gait file.
+    ///
+    /// Returns
+    /// -------
+    /// Gait
+    ///     The gait.
+    ///
+    /// Raises
+    /// ------
+    /// BadInput
+    ///     If the text is invalid.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import swimmer as sw
+    /// >>> best = sw.optimize.turning("purcell", max_angle=1.0).gait
+    /// >>> sw.Gait.from_text(best.to_text()) == best
+    /// True
     #[staticmethod]
     fn from_text(text: &str) -> PyResult<Self> {
         let read = GaitFile::parse(text, Path::new("gait.gait"));
@@ -172,7 +286,29 @@ impl Gait {
         rows(py, &self.file.phi, &[self.file.phi.len(), 2])
     }
 
-    /// Joint angles [rad] at fractions of the period, between the samples too: shape (…,) gives (…, 2). Cycles go on: 1.25 is 0.25.
+    /// Returns the joint angles at fractions of the period, also between the samples.
+    ///
+    /// Parameters
+    /// ----------
+    /// u : array_like
+    ///     Fractions of the period; 1.25 is 0.25 of the second cycle.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     Joint angles [rad], shape (…, 2).
+    ///
+    /// Raises
+    /// ------
+    /// BadInput
+    ///     If a fraction is not finite.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import swimmer as sw
+    /// >>> sw.Gait.circle(1.0).at([0.0, 0.5]).round(6)
+    /// array([[ 0.707107,  0.707107],
+    ///        [-0.707107, -0.707107]])
     fn at<'py>(&self, py: Python<'py>, u: Numbers<'py>) -> PyResult<Array<'py>> {
         let u = u.as_array();
         if let Some(odd) = u.iter().find(|u| !u.is_finite()) {
@@ -199,7 +335,18 @@ impl Gait {
         self.file.corners.clone()
     }
 
-    /// The same cycle run the other way, from the same start.
+    /// Returns the same cycle, run the other way from the same start.
+    ///
+    /// Returns
+    /// -------
+    /// Gait
+    ///     The reversed gait.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import swimmer as sw
+    /// >>> sw.Gait.circle(1.2).reversed()
+    /// <Gait circle:1.2:cw>
     fn reversed(&self) -> PyResult<Self> {
         match &self.closed_form {
             None => Self::of_file(self.file.reversed()),
@@ -212,18 +359,44 @@ impl Gait {
         }
     }
 
-    /// Its word on the command line, `circle:1.2` or `square:1.2:cw`; None for a gait from samples.
+    /// Closed form as `load` reads it, ``circle:1.2`` or ``square:1.2:cw``; None for samples.
     #[getter]
     fn closed_form(&self) -> Option<&str> {
         self.closed_form.as_deref()
     }
 
-    /// The text of its gait file; a closed form is sampled.
+    /// Returns the text of the gait file; a closed form is sampled.
+    ///
+    /// Returns
+    /// -------
+    /// str
+    ///     Content of a gait file.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import swimmer as sw
+    /// >>> "u,phi1,phi2" in sw.Gait.circle(1.2).to_text()
+    /// True
     fn to_text(&self) -> String {
         self.file.to_text()
     }
 
-    /// Writes its gait file, in the place of one that is there.
+    /// Writes the gait file. A file that exists is replaced.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : str or path
+    ///     Path of the file.
+    ///
+    /// Raises
+    /// ------
+    /// Failed
+    ///     If the file cannot be written.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import swimmer as sw
+    /// >>> sw.Gait.circle(1.2).save("mine.gait")  # doctest: +SKIP
     fn save(&self, path: PathBuf) -> PyResult<()> {
         self.file.save(&path).map_err(|error| of_file(&error))
     }

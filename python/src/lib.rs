@@ -6,12 +6,18 @@
 // The docs are Python's help, which shows no Markdown, and Python hands its arguments over by value.
 #![allow(clippy::doc_markdown, clippy::needless_pass_by_value)]
 
+mod arguments;
 mod arrays;
+mod atlas;
+mod calibrate;
 mod commands;
+mod computation;
 mod errors;
 mod experiment;
 mod gait;
+mod keywords;
 mod operations;
+mod optimize;
 mod robot;
 mod signals;
 mod swimmer;
@@ -19,6 +25,10 @@ mod swimmer;
 /// The extension module; `python/swimmer/_swimmer.pyi` says what is in it.
 #[pyo3::pymodule]
 mod _swimmer {
+    #[pymodule_export]
+    use super::atlas::all_optima;
+    #[pymodule_export]
+    use super::calibrate::{fit, survey};
     #[pymodule_export]
     use super::commands::{options, run, run_captured};
     #[pymodule_export]
@@ -31,6 +41,8 @@ mod _swimmer {
     use super::gait::Gait;
     #[pymodule_export]
     use super::operations::{certify, height_map, simulate};
+    #[pymodule_export]
+    use super::optimize::{best_gait, passive_waveform, steer_gaits};
     #[pymodule_export]
     use super::robot::{RobotLink, RobotSettings};
     #[pymodule_export]

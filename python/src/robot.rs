@@ -1,18 +1,18 @@
 //! A robot behind a port, and the cameras that see it. `python/swimmer/robot.py` makes the public class of it.
 
-use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use pythonize::pythonize;
 use serde::Serialize;
 use swimmer_command::{Reply, RobotHandle, RobotOptions, Stopper};
 
 use crate::commands::exception;
-use crate::errors::BadInput;
+use crate::errors::{BadInput, in_terms_of_python};
 use crate::gait::Gait;
+use crate::keywords::Keywords;
 use crate::signals::Signals;
-use crate::swimmer::Swimmer;
 
 /// Time, x, y, heading, and the deviations of position and heading.
 type PoseNumbers = (f64, f64, f64, f64, f64, f64);
@@ -29,36 +29,26 @@ pub(crate) struct RobotSettings {
 #[pymethods]
 impl RobotSettings {
     #[new]
-    #[pyo3(signature = (ports, *, swimmer, track, front, back, body, facing, key, baud, log, seed))]
-    #[allow(clippy::too_many_arguments)] // each is a keyword in Python
-    fn new(
-        ports: Vec<String>,
-        swimmer: Option<PyRef<'_, Swimmer>>,
-        track: Option<String>,
-        front: Option<String>,
-        back: Option<String>,
-        body: Option<String>,
-        facing: Option<f64>,
-        key: Option<PathBuf>,
-        baud: Option<u32>,
-        log: Option<PathBuf>,
-        seed: u64,
-    ) -> Self {
-        Self {
+    fn new(ports: Vec<String>, keywords: Bound<'_, PyDict>) -> PyResult<Self> {
+        let keywords = Keywords(keywords);
+        let baud = keywords.count("baud", 1, u64::from(u32::MAX))?;
+        Ok(Self {
             options: RobotOptions {
                 ports,
-                baud,
-                key,
-                log,
-                track,
-                front,
-                back,
-                body,
-                facing_rad: facing,
-                swimmer: swimmer.map(|swimmer| swimmer.file().clone()),
-                seed,
+                baud: baud.and_then(|baud| u32::try_from(baud).ok()),
+                key: keywords.path("key")?,
+                log: keywords.path("log")?,
+                track: keywords.text("track")?,
+                front: keywords.text("front")?,
+                back: keywords.text("back")?,
+                body: keywords.text("body")?,
+                facing_rad: keywords.signed_angle("facing")?,
+                scale: keywords.positive("scale", "give the metres per unit, above zero")?,
+                axes: keywords.parsed("axes")?,
+                swimmer: keywords.swimmer("swimmer")?,
+                seed: keywords.count("seed", 0, u64::MAX)?.unwrap_or(1),
             },
-        }
+        })
     }
 }
 
@@ -80,7 +70,9 @@ pub(crate) struct RobotLink {
 /// Value of a reply, with its messages.
 pub(crate) fn value<T>(reply: Reply<T>) -> PyResult<(T, Vec<String>)> {
     let noted = reply.map_err(exception)?;
-    Ok((noted.value, noted.notes))
+    let notes = noted.notes.iter();
+    let notes = notes.map(|note| in_terms_of_python(note)).collect();
+    Ok((noted.value, notes))
 }
 
 impl RobotLink {

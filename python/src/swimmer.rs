@@ -10,9 +10,44 @@ use swimmer_model::{Medium, Model, TangentialDrag};
 use crate::arrays::{Array, Numbers, Shapes};
 use crate::errors::{BadInput, of_file};
 
-/// A three-link swimmer: links, drag, sphere, and where known its fluid and servos. It never changes; `replace` gives another.
+/// A three-link swimmer: links, drag, sphere, and where known its fluid and servos. It never changes; `replace` returns another one.
 ///
-/// Lengths are in metres, angles in radians, drag and power over the viscosity.
+/// Lengths are in metres and angles in radians; drag and power are over the viscosity. `Swimmer(middle=0.07, side=0.14)` makes a viscous
+/// swimmer; `preset` and `load` return others.
+///
+/// Parameters
+/// ----------
+/// middle : float
+///     Length of the middle link [m].
+/// side : float, optional
+///     Length of both side links [m].
+/// front, back : float, optional
+///     Lengths of the side links [m], in place of `side`.
+/// chi : float, optional
+///     Ratio of normal to tangential drag.
+/// sphere_radius : float, optional
+///     Radius of the sphere on the middle link [m]; 0 for none.
+/// log_aspect, half_thickness, over_viscosity : float, optional
+///     Forms of the tangential drag coefficient, of which at most one is given: ln(l/a), a [m], or the coefficient over the viscosity. Without
+///     them ``over_viscosity=1``.
+/// kinematic_viscosity, density : float, optional
+///     Fluid [m²/s, kg/m³], for torques and power.
+/// name : str, optional
+///     Name for people.
+///
+/// Raises
+/// ------
+/// BadInput
+///     If a value is invalid or missing.
+///
+/// Examples
+/// --------
+/// >>> import swimmer as sw
+/// >>> robot = sw.Swimmer(middle=0.071, side=0.137, chi=3.6, sphere_radius=0.069)
+/// >>> round(robot.length, 3)
+/// 0.345
+/// >>> robot.A([0.5, -0.3]).shape
+/// (3, 2)
 #[pyclass(frozen, module = "swimmer")]
 pub(crate) struct Swimmer {
     file: SwimmerFile,
@@ -25,7 +60,8 @@ impl Swimmer {
         &self.file
     }
 
-    fn of(file: SwimmerFile) -> PyResult<Self> {
+    /// A swimmer from the content of its file.
+    pub(crate) fn of(file: SwimmerFile) -> PyResult<Self> {
         let model = Model::new(&file.swimmer).map_err(|error| {
             BadInput::new_err(format!("the swimmer `{}` cannot swim: {error}", file.name))
         })?;
@@ -76,7 +112,28 @@ impl Swimmer {
         )
     }
 
-    /// A preset that `swimmer swimmers` lists, such as `purcell`, `robot` or `perfect-fluid`.
+    /// Returns a preset.
+    ///
+    /// Parameters
+    /// ----------
+    /// name : str
+    ///     ``purcell``, ``robot``, ``robot-slender``, ``perfect-fluid``, ``kinematic-snake`` or ``elastic-tail``.
+    ///
+    /// Returns
+    /// -------
+    /// Swimmer
+    ///     The swimmer.
+    ///
+    /// Raises
+    /// ------
+    /// BadInput
+    ///     If there is no such preset.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import swimmer as sw
+    /// >>> sw.Swimmer.preset("purcell").chi
+    /// 2.0
     #[staticmethod]
     fn preset(name: &str) -> PyResult<Self> {
         let preset = SwimmerFile::preset(name).ok_or_else(|| {
@@ -88,7 +145,28 @@ impl Swimmer {
         Self::of(preset)
     }
 
-    /// A swimmer file (TOML), or a preset by its name, as `--swimmer` takes them.
+    /// Reads a swimmer file, or returns a preset.
+    ///
+    /// Parameters
+    /// ----------
+    /// preset_or_path : str or path
+    ///     Name of a preset, or path of a swimmer file (TOML).
+    ///
+    /// Returns
+    /// -------
+    /// Swimmer
+    ///     The swimmer.
+    ///
+    /// Raises
+    /// ------
+    /// BadInput
+    ///     If the file cannot be read or is invalid.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import swimmer as sw
+    /// >>> sw.Swimmer.load("robot").name
+    /// 'robot'
     #[staticmethod]
     fn load(preset_or_path: PathBuf) -> PyResult<Self> {
         let found = match preset_or_path.to_str() {
@@ -98,15 +176,67 @@ impl Swimmer {
         Self::of(found.map_err(|error| of_file(&error))?)
     }
 
-    /// The text of a swimmer file.
+    /// Reads the text of a swimmer file.
+    ///
+    /// Parameters
+    /// ----------
+    /// text : str
+    ///     Content of a swimmer file (TOML).
+    ///
+    /// Returns
+    /// -------
+    /// Swimmer
+    ///     The swimmer.
+    ///
+    /// Raises
+    /// ------
+    /// BadInput
+    ///     If the text is invalid.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import swimmer as sw
+    /// >>> robot = sw.Swimmer.preset("robot")
+    /// >>> sw.Swimmer.from_toml(robot.to_toml()) == robot
+    /// True
     #[staticmethod]
     fn from_toml(text: &str) -> PyResult<Self> {
         let read = SwimmerFile::parse(text, Path::new("swimmer.toml"));
         Self::of(read.map_err(|error| of_file(&error))?)
     }
 
-    /// This swimmer with other values; what is not named stays. `side` is both side links; the last three are the forms of c_t, of
-    /// which one holds; `sphere_radius=0` takes the sphere away.
+    /// Returns this swimmer with other values; what is not named stays.
+    ///
+    /// Parameters
+    /// ----------
+    /// name : str, optional
+    ///     Name for people.
+    /// middle, side, front, back : float, optional
+    ///     Lengths of the links [m]; `side` is both side links.
+    /// chi : float, optional
+    ///     Ratio of normal to tangential drag.
+    /// sphere_radius : float, optional
+    ///     Radius of the sphere [m]; 0 takes it away.
+    /// log_aspect, half_thickness, over_viscosity : float, optional
+    ///     Forms of the tangential drag coefficient, of which at most one is given.
+    /// kinematic_viscosity, density : float, optional
+    ///     Fluid [m²/s, kg/m³].
+    ///
+    /// Returns
+    /// -------
+    /// Swimmer
+    ///     The other swimmer.
+    ///
+    /// Raises
+    /// ------
+    /// BadInput
+    ///     If a value is invalid.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import swimmer as sw
+    /// >>> sw.Swimmer.preset("robot").replace(chi=2.6, name="slow").chi
+    /// 2.6
     #[pyo3(signature = (*, name=None, middle=None, side=None, front=None, back=None, chi=None, sphere_radius=None,
         log_aspect=None, half_thickness=None, over_viscosity=None, kinematic_viscosity=None, density=None))]
     #[allow(clippy::too_many_arguments)] // each is a keyword in Python
@@ -170,7 +300,28 @@ impl Swimmer {
         Self::of(file)
     }
 
-    /// The local connection A(Φ), body velocity (v_x, v_y, θ̇) per joint rate: shape (…, 2) gives (…, 3, 2).
+    /// Returns the local connection A(Φ): body velocity (v_x, v_y, θ̇) per joint rate.
+    ///
+    /// Parameters
+    /// ----------
+    /// phi : array_like
+    ///     Joint angles [rad], shape (…, 2).
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     Shape (…, 3, 2).
+    ///
+    /// Raises
+    /// ------
+    /// BadInput
+    ///     If the last dimension is not 2.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import swimmer as sw
+    /// >>> sw.Swimmer.preset("purcell").A([[0.5, -0.3], [1.0, 1.0]]).shape
+    /// (2, 3, 2)
     #[pyo3(name = "A")]
     fn connection<'py>(&self, py: Python<'py>, phi: Numbers<'py>) -> PyResult<Array<'py>> {
         Shapes::copied(&phi)?.each(py, &[3, 2], |phi| {
@@ -183,7 +334,29 @@ impl Swimmer {
         })
     }
 
-    /// The power matrix W(Φ) over the viscosity, power = Φ̇ᵀWΦ̇: shape (…, 2) gives (…, 2, 2).
+    /// Returns the power matrix W(Φ) over the viscosity: power = Φ̇ᵀWΦ̇.
+    ///
+    /// Parameters
+    /// ----------
+    /// phi : array_like
+    ///     Joint angles [rad], shape (…, 2).
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     Shape (…, 2, 2).
+    ///
+    /// Raises
+    /// ------
+    /// BadInput
+    ///     If the last dimension is not 2.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import swimmer as sw
+    /// >>> W = sw.Swimmer.preset("purcell").W([0.5, -0.3])
+    /// >>> bool(W[0, 1] == W[1, 0])
+    /// True
     #[pyo3(name = "W")]
     fn power<'py>(&self, py: Python<'py>, phi: Numbers<'py>) -> PyResult<Array<'py>> {
         Shapes::copied(&phi)?.each(py, &[2, 2], |phi| {
@@ -192,7 +365,28 @@ impl Swimmer {
         })
     }
 
-    /// The exact derivatives of A, the joint of the derivative last: [..., i, j, k] is ∂A_ij/∂φ_k; (…, 2) gives (…, 3, 2, 2).
+    /// Returns the exact derivatives of A: ``[..., i, j, k]`` is ∂A_ij/∂φ_k.
+    ///
+    /// Parameters
+    /// ----------
+    /// phi : array_like
+    ///     Joint angles [rad], shape (…, 2).
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     Shape (…, 3, 2, 2).
+    ///
+    /// Raises
+    /// ------
+    /// BadInput
+    ///     If the last dimension is not 2.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import swimmer as sw
+    /// >>> sw.Swimmer.preset("purcell").dA([0.5, -0.3]).shape
+    /// (3, 2, 2)
     #[pyo3(name = "dA")]
     fn d_connection<'py>(&self, py: Python<'py>, phi: Numbers<'py>) -> PyResult<Array<'py>> {
         Shapes::copied(&phi)?.each(py, &[3, 2, 2], |phi| {
@@ -205,7 +399,28 @@ impl Swimmer {
         })
     }
 
-    /// The exact derivatives of W over the viscosity: [..., i, j, k] is ∂W_ij/∂φ_k; (…, 2) gives (…, 2, 2, 2).
+    /// Returns the exact derivatives of W: ``[..., i, j, k]`` is ∂W_ij/∂φ_k.
+    ///
+    /// Parameters
+    /// ----------
+    /// phi : array_like
+    ///     Joint angles [rad], shape (…, 2).
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     Shape (…, 2, 2, 2).
+    ///
+    /// Raises
+    /// ------
+    /// BadInput
+    ///     If the last dimension is not 2.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import swimmer as sw
+    /// >>> sw.Swimmer.preset("purcell").dW([0.5, -0.3]).shape
+    /// (2, 2, 2)
     #[pyo3(name = "dW")]
     fn d_power<'py>(&self, py: Python<'py>, phi: Numbers<'py>) -> PyResult<Array<'py>> {
         Shapes::copied(&phi)?.each(py, &[2, 2, 2], |phi| {
@@ -217,8 +432,28 @@ impl Swimmer {
         })
     }
 
-    /// The curvature dA + [A₁, A₂], rows (x, y, θ): the body displacement of a tiny counter-clockwise loop over its area; (…, 2)
-    /// gives (…, 3).
+    /// Returns the curvature dA + [A₁, A₂], rows (x, y, θ): body displacement of a small counter-clockwise loop over its area.
+    ///
+    /// Parameters
+    /// ----------
+    /// phi : array_like
+    ///     Joint angles [rad], shape (…, 2).
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     Shape (…, 3).
+    ///
+    /// Raises
+    /// ------
+    /// BadInput
+    ///     If the last dimension is not 2.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import swimmer as sw
+    /// >>> sw.Swimmer.preset("purcell").F([0.5, -0.3]).shape
+    /// (3,)
     #[pyo3(name = "F")]
     fn curvature<'py>(&self, py: Python<'py>, phi: Numbers<'py>) -> PyResult<Array<'py>> {
         Shapes::copied(&phi)?.each(py, &[3], |phi| {
@@ -250,13 +485,13 @@ impl Swimmer {
         self.file.swimmer.links.back
     }
 
-    /// L, the length of all links [m].
+    /// Length of all links L [m].
     #[getter]
     fn length(&self) -> f64 {
         self.file.swimmer.total_length()
     }
 
-    /// χ = c_n/c_t, of the middle link if the links have their own.
+    /// Ratio of normal to tangential drag, of the middle link if the links differ in it.
     #[getter]
     fn chi(&self) -> f64 {
         self.file.swimmer.chi
@@ -268,8 +503,8 @@ impl Swimmer {
         self.file.swimmer.sphere_radius
     }
 
-    /// The form of c_t and its value, as in the swimmer file: {"log_aspect": 4.543}, {"half_thickness": …} or {"over_viscosity": …},
-    /// the last with one number or with {"middle": …, "front": …, "back": …}.
+    /// Form of the tangential drag coefficient with its value, as in the swimmer file: ``log_aspect``, ``half_thickness`` or ``over_viscosity``,
+    /// the last as one number or with one for ``middle``, ``front`` and ``back``.
     #[getter]
     fn c_t<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let fields = PyDict::new(py);
@@ -298,18 +533,44 @@ impl Swimmer {
         }
     }
 
-    /// The fingerprint that gait files carry: SHA-256 of links, drag and sphere.
+    /// Fingerprint that gait files carry: SHA-256 of links, drag and sphere.
     #[getter]
     fn hash(&self) -> String {
         self.file.hash().to_string()
     }
 
-    /// The text of its swimmer file.
+    /// Returns the text of the swimmer file.
+    ///
+    /// Returns
+    /// -------
+    /// str
+    ///     Content of a swimmer file (TOML).
+    ///
+    /// Examples
+    /// --------
+    /// >>> import swimmer as sw
+    /// >>> print(sw.Swimmer.preset("purcell").to_toml().splitlines()[0])
+    /// name = "purcell"
     fn to_toml(&self) -> String {
         self.file.to_toml()
     }
 
-    /// Writes its swimmer file, in the place of one that is there.
+    /// Writes the swimmer file. A file that exists is replaced.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : str or path
+    ///     Path of the file (.toml).
+    ///
+    /// Raises
+    /// ------
+    /// Failed
+    ///     If the file cannot be written.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import swimmer as sw
+    /// >>> sw.Swimmer.preset("robot").save("mine.toml")  # doctest: +SKIP
     fn save(&self, path: PathBuf) -> PyResult<()> {
         self.file.save(&path).map_err(|error| of_file(&error))
     }

@@ -16,7 +16,7 @@ from . import experiment, optimize, sweep
 from ._commands import atlas, calibrate, certify, height_map, plan, simulate, tracks
 from ._run import Doubt
 from ._swimmer import BadInput, Error, Failed, Gait, Swimmer, __version__
-from .results import Atlas, Calibration, HeightMap, OptimalGait, Result, Simulation
+from .results import Atlas, Calibration, HeightMap, OptimalGait, Result, Simulation, Table, Trajectory
 from .robot import Pose, Robot, Telemetry
 
 __all__ = [
@@ -34,7 +34,9 @@ __all__ = [
     "Robot",
     "Simulation",
     "Swimmer",
+    "Table",
     "Telemetry",
+    "Trajectory",
     "__version__",
     "atlas",
     "calibrate",

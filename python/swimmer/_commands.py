@@ -1,15 +1,12 @@
-"""The commands that are functions of the package itself."""
+"""Functions of the package itself, one for each command of the same name."""
 
 import os
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Literal
-
-import numpy as np
 
 from . import _swimmer
 from ._run import Run, Text, warn
-from ._swimmer import BadInput, Gait, Swimmer
+from ._swimmer import Gait, Swimmer
 from .optimize import Angle
 from .results import Atlas, Calibration, HeightMap, OptimalGait, Result, Simulation, Trajectory
 
@@ -40,7 +37,7 @@ def simulate(
     cycles : int, optional
         Number of cycles of the trajectory and of the picture.
     played : bool, optional
-        Also forecast the cycle as the robot plays it: ``played``.
+        With True, also forecast the cycle as the robot plays it: ``played``.
     period : float, optional
         Duration of a cycle [s], 30 unless given.
     knots, pulse_step : int, optional
@@ -62,7 +59,7 @@ def simulate(
     Raises
     ------
     BadInput
-        If an argument or a file cannot be used.
+        If a value or a file cannot be used.
 
     Examples
     --------
@@ -71,54 +68,24 @@ def simulate(
     >>> swum.trajectory.pose.shape
     (1001, 3)
     """
-    drawn = [picture, passive, stiffness, relaxation, output]
-    if any(option is not None for option in drawn) or (isinstance(gait, str) and gait.startswith("sine:")):
-        return _simulate_by_command(swimmer, gait, cycles, played, period, knots, pulse_step, picture, passive, stiffness, relaxation, output)
-    if (knots is not None or pulse_step is not None) and not played:
-        raise BadInput("knots and pulse_step belong to a forecast on the robot: add played=True")
-    document, (cycle, u, phi, pose), notes = _swimmer.simulate(swimmer, gait, cycles, period, played, knots, pulse_step)
+    document, (cycle, u, phi, pose), notes = _swimmer.simulate(
+        swimmer,
+        gait,
+        {
+            "cycles": cycles,
+            "played": played,
+            "period": period,
+            "knots": knots,
+            "pulse_step": pulse_step,
+            "picture": picture,
+            "passive": passive,
+            "stiffness": stiffness,
+            "relaxation": relaxation,
+            "output": output,
+        },
+    )
     warn(notes, stacklevel=3)
     return Simulation(document, Trajectory(cycle, u, phi, pose))
-
-
-def _simulate_by_command(
-    swimmer: Swimmer | Text,
-    gait: Gait | Text,
-    cycles: int,
-    played: bool,
-    period: float | None,
-    knots: int | None,
-    pulse_step: int | None,
-    picture: Text | None,
-    passive: str | None,
-    stiffness: float | None,
-    relaxation: float | None,
-    output: Text | None,
-) -> Simulation:
-    """Pictures and passive joints, which the command draws and reads."""
-    with Run("simulate") as run:
-        run.swimmer(swimmer)
-        run.gait(gait)
-        run.options(
-            {
-                "cycles": cycles,
-                "played": played,
-                "period": period,
-                "knots": knots,
-                "pulse_step": pulse_step,
-                "picture": picture,
-                "passive": passive,
-                "stiffness": stiffness,
-                "relaxation": relaxation,
-                "output": output,
-            }
-        )
-        table = run.place("trajectory.csv")
-        run.words(f"--trajectory={table}")
-        document = run.document(stacklevel=4)
-        rows = np.loadtxt(table, delimiter=",", skiprows=1, ndmin=2)
-    trajectory = Trajectory(rows[:, 0].astype(np.int64), rows[:, 1], rows[:, 2:4], rows[:, 4:7])
-    return Simulation(document, trajectory)
 
 
 def certify(
@@ -163,7 +130,7 @@ def certify(
     Raises
     ------
     BadInput
-        If an argument or a file cannot be used, or neither names an objective.
+        If a value or a file cannot be used, or neither names an objective.
 
     Examples
     --------
@@ -172,7 +139,18 @@ def certify(
     'pass'
     """
     document, notes = _swimmer.certify(
-        swimmer, gait, objective, fixed_period, max_angle, min_angle, sector, no_overlap, clearance, playable
+        swimmer,
+        gait,
+        {
+            "objective": objective,
+            "fixed_period": fixed_period,
+            "max_angle": max_angle,
+            "min_angle": min_angle,
+            "sector": sector,
+            "no_overlap": no_overlap,
+            "clearance": clearance,
+            "playable": playable,
+        },
     )
     warn(notes, stacklevel=3)
     certificate = Result(document)
@@ -195,42 +173,77 @@ def atlas(
     starts: int = 200,
     seed: int = 1,
     continue_: str | None = None,
-    gait: Sequence[Gait | Text] = (),
+    gait: str | Sequence[str] = (),
     steps: int | None = None,
 ) -> Atlas:
-    """Every local optimum that seeded starts find, with and without the paper's symmetries, each certified: `optima`, best first.
+    """Finds every local optimum, with and without the paper's symmetries, each with its certificate.
 
-    `max_rate`, an angle a second, one for both servos or one each, is needed for speed and tells the speed of the others.
-    `continue_="max-angle=2.8..1.2"` follows them as a parameter changes; `gait` names those to follow.
+    Random closed curves are optimised, and duplicates by the swimmer's symmetries are merged. The same seed gives the same atlas.
+
+    Parameters
+    ----------
+    swimmer : Swimmer, str or path
+        A swimmer, the name of a preset, or a swimmer file.
+    objective : {"displacement", "efficiency", "speed"}
+        Quantity to maximise.
+    max_rate : float, str or a pair of them, optional
+        Largest rate of the servos [rad/s], or as ``200deg``: one for both, or one for each. Speed needs it; for the other objectives it
+        adds the speed of each gait in its shortest period.
+    max_angle : float or str, optional
+        Largest joint angle [rad], or as ``70deg``.
+    no_overlap, playable : bool, optional
+        Links may not cross; the bounds of the robot.
+    clearance : float, optional
+        Least distance of the side links [m].
+    starts, seed : int, optional
+        Number of random starts, and their seed.
+    continue_ : str, optional
+        Parameter along which gaits are followed, with its range: ``max-angle=2.8..1.2``, ``chi=2..1.5``, ``sphere=0.07..0`` or
+        ``link-ratio=1..2``. For displacement, or with `gait`, no atlas is computed.
+    gait : {"small", "large"} or a sequence of them, optional
+        Efficiency gaits to follow.
+    steps : int, optional
+        Number of equal steps of the parameter, 20 unless given.
+
+    Returns
+    -------
+    Atlas
+        ``optima``, a table of `OptimalGait`, the best first; ``continuation`` with `continue_`.
+
+    Raises
+    ------
+    BadInput
+        If a value cannot be used.
+    Failed
+        If there is no gait to follow.
+
+    Examples
+    --------
+    >>> import swimmer as sw
+    >>> atlas = sw.atlas("purcell", objective="displacement", max_angle=1.2, starts=2)
+    >>> round(atlas.optima[0].displacement_over_length, 6)
+    0.078224
+    >>> table = atlas.optima.to_pandas()
     """
-    with Run("atlas") as run:
-        run.swimmer(swimmer)
-        run.options(
-            {
-                "objective": objective,
-                "max_rate": max_rate,
-                "max_angle": max_angle,
-                "no_overlap": no_overlap,
-                "clearance": clearance,
-                "playable": playable,
-                "starts": starts,
-                "seed": seed,
-                "continue": continue_,
-                "steps": steps,
-            }
-        )
-        for one in gait:
-            run.gait(one)
-        folder = run.place("atlas")
-        run.words(f"--output={folder}")
-        document = run.document()
-        document.pop("picture", None)
-        made_for = swimmer if isinstance(swimmer, Swimmer) else Swimmer.load(swimmer)
-        document["optima"] = [
-            OptimalGait(optimum, Gait.load(run.found(optimum["gait"])), made_for)
-            for optimum in document["optima"]
-        ]
-    return Atlas(document)
+    document, gaits, made_for, notes = _swimmer.atlas(
+        swimmer,
+        {
+            "objective": objective,
+            "max_rate": max_rate,
+            "max_angle": max_angle,
+            "no_overlap": no_overlap,
+            "clearance": clearance,
+            "playable": playable,
+            "starts": starts,
+            "seed": seed,
+            "continue_": continue_,
+            "gait": gait or None,
+            "steps": steps,
+        },
+    )
+    warn(notes, stacklevel=3)
+    optima = zip(document.get("optima", ()), gaits, strict=True)
+    return Atlas({**document, "optima": [OptimalGait(optimum, one, made_for) for optimum, one in optima]})
 
 
 def height_map(
@@ -261,7 +274,7 @@ def height_map(
     Raises
     ------
     BadInput
-        If an argument or a file cannot be used, or a gait leaves the map.
+        If a value or a file cannot be used, or a gait leaves the map.
 
     Examples
     --------
@@ -270,7 +283,7 @@ def height_map(
     (201, 201)
     """
     gaits = [gait] if isinstance(gait, Gait | str | os.PathLike) else list(gait)
-    document, phi, height, notes = _swimmer.height_map(swimmer, row, max_angle, gaits)
+    document, phi, height, notes = _swimmer.height_map(swimmer, gaits, {"row": row, "max_angle": max_angle})
     warn(notes, stacklevel=3)
     return HeightMap(document, phi, height)
 
@@ -285,7 +298,7 @@ def calibrate(
     back: str | None = None,
     body: str | None = None,
     level: float = 0.95,
-    fit_also: Sequence[str] = (),
+    fit_also: str | Sequence[str] = (),
     advise: bool = False,
     scale: float | None = None,
     rate: float | None = None,
@@ -293,38 +306,80 @@ def calibrate(
     likelihood: float | None = None,
     output: Text | None = None,
 ) -> Calibration:
-    """Cycles of a campaign or of one recording, and for a campaign the fit: `sphere_radius_m`, `chi`, `intervals`, `verdict`, …
+    """Fits the radius of the sphere and chi to a campaign, or evaluates the cycles of one recording.
 
-    A campaign is a TOML file. A single recording needs `gait`, `period` and `swimmer` here, and either the reflectors `front` and
-    `back` or the rigid `body` that is the middle link. `output` is a folder for the report.
+    Parameters
+    ----------
+    file : path
+        A campaign (.toml), or a recording of cameras.
+    gait : Gait, str or path, optional
+        Gait of a single recording.
+    period : float, optional
+        Duration of a cycle of a single recording [s].
+    swimmer : Swimmer, str or path, optional
+        Swimmer of a single recording.
+    front, back : str, optional
+        Reflectors of a single recording: names, pairs of columns, or places ``X,Y`` in the first frame [m].
+    body : str, optional
+        Rigid body that is the middle link, instead of reflectors.
+    level : float, optional
+        Level of the intervals.
+    fit_also : str or sequence of str, optional
+        Nuisance parameters to fit in addition: ``gain``, ``gains``, ``offsets``, ``deadband``, ``ct``, ``marker``, ``scale``, …
+    advise : bool, optional
+        With True, rank further runs by how much each would narrow the intervals: ``advice``.
+    scale : float, optional
+        Metres per unit of a single recording.
+    rate : float, optional
+        Frames per second of a single recording.
+    axes : str, optional
+        Axes of a single recording that are the tank's x and y: ``x,-y`` for an image, ``z,x`` for Y up.
+    likelihood : float, optional
+        Least likelihood of a point that counts (DeepLabCut), 0.9 unless given.
+    output : path, optional
+        New folder for report, fitted swimmer and tables of a campaign.
+
+    Returns
+    -------
+    Calibration
+        ``runs``, a table of the recordings; for a campaign also ``sphere_radius_m``, ``chi``, ``intervals``, ``verdict`` and ``reasons``.
+
+    Raises
+    ------
+    BadInput
+        If a value or a file cannot be used, or the runs do not determine the parameters.
+    Failed
+        If the fit does not converge.
+
+    Examples
+    --------
+    >>> import swimmer as sw
+    >>> fit = sw.calibrate("campaign.toml")  # doctest: +SKIP
+    >>> fit.chi, fit.intervals.chi  # doctest: +SKIP
+    (3.596, (3.591, 3.601))
+    >>> fit.runs.to_pandas()[["gait", "x_m", "x_sd_m"]]  # doctest: +SKIP
     """
-    with Run("calibrate", os.fspath(file)) as run:
-        if gait is not None:
-            run.gait(gait)
-        if swimmer is not None:
-            run.swimmer(swimmer)
-        run.options(
-            {
-                "period": period,
-                "front": front,
-                "back": back,
-                "body": body,
-                "level": level,
-                "fit_also": ",".join(fit_also) or None,
-                "advise": advise,
-                "scale": scale,
-                "rate": rate,
-                "axes": axes,
-                "likelihood": likelihood,
-            }
-        )
-        if Path(file).suffix != ".toml":
-            run.options({"output": output})
-            return Calibration(run.document(), None)
-        folder = Path(output) if output is not None else run.place("fit")
-        run.words(f"--output={folder}")
-        document = run.document()
-        return Calibration(document, Swimmer.load(folder / "fitted.toml"))
+    document, fitted, notes = _swimmer.calibrate(
+        file,
+        gait,
+        swimmer,
+        {
+            "period": period,
+            "front": front,
+            "back": back,
+            "body": body,
+            "level": level,
+            "fit_also": fit_also or None,
+            "advise": advise,
+            "scale": scale,
+            "rate": rate,
+            "axes": axes,
+            "likelihood": likelihood,
+            "output": output,
+        },
+    )
+    warn(notes, stacklevel=3)
+    return Calibration(document, fitted)
 
 
 def tracks(
@@ -335,10 +390,43 @@ def tracks(
     axes: str | None = None,
     likelihood: float | None = None,
 ) -> Result:
-    """What a tracking file holds, without fitting: `format`, `rate_hz`, `unit`, `frames`, `points`."""
-    with Run("tracks", os.fspath(file)) as run:
-        run.options({"scale": scale, "rate": rate, "axes": axes, "likelihood": likelihood})
-        return Result(run.document())
+    """Reports what a recording holds, without a fit.
+
+    Parameters
+    ----------
+    file : path
+        A recording of cameras.
+    scale : float, optional
+        Metres per unit of the recording.
+    rate : float, optional
+        Frames per second.
+    axes : str, optional
+        Axes of the recording that are the tank's x and y: ``x,-y`` for an image, ``z,x`` for Y up.
+    likelihood : float, optional
+        Least likelihood of a point that counts (DeepLabCut), 0.9 unless given.
+
+    Returns
+    -------
+    Result
+        ``format``, ``rate_hz``, ``unit``, ``frames``, and ``points``, a table.
+
+    Raises
+    ------
+    BadInput
+        If a value or the file cannot be used.
+
+    Examples
+    --------
+    >>> import swimmer as sw
+    >>> sw.tracks("circle-070.csv").format  # doctest: +SKIP
+    'table'
+    """
+    document, notes = _swimmer.tracks(
+        file,
+        {"scale": scale, "rate": rate, "axes": axes, "likelihood": likelihood},
+    )
+    warn(notes, stacklevel=3)
+    return Result(document)
 
 
 def plan(
@@ -357,10 +445,52 @@ def plan(
     playable: bool = False,
     output: Text | None = None,
 ) -> Result:
-    """Strings the gaits of `optimize.steer` together to a target: `steps`, `duration_s`, `reached`, `off_m`, …
+    """Plans a sequence of gaits that joins one pose to another.
 
-    `to` and `from_` are (x, y) or (x, y, heading), `tank` is (length, width), all in metres and radians. `gaits` is a folder that
-    `optimize.steer` wrote; `output` a new playlist, which `swimmer robot play --playlist` plays.
+    Parameters
+    ----------
+    swimmer : Swimmer, str or path
+        A swimmer, the name of a preset, or a swimmer file.
+    to : sequence of float or str
+        Target (x, y) [m] or (x, y, heading) [m, rad], or as ``0.2,0.1,90deg``.
+    from_ : sequence of float or str, optional
+        Start, the origin along x unless given.
+    tank : pair of float or str, optional
+        Length and width of the tank [m], or as ``1.6x1.2``.
+    margin : float, optional
+        Distance that the swimmer keeps from the walls [m].
+    gaits : path, optional
+        Folder that `optimize.steer` wrote; the gaits are computed unless it is given.
+    shape : pair of float or str, optional
+        Shape at which computed gaits join [rad].
+    max_rate : float, str or a pair of them, optional
+        Largest rate of the servos [rad/s], or as ``200deg``: one for both, or one for each.
+    max_angle : float or str, optional
+        Largest joint angle [rad], or as ``70deg``.
+    no_overlap, playable : bool, optional
+        Links may not cross; the bounds of the robot.
+    clearance : float, optional
+        Least distance of the side links [m].
+    output : path, optional
+        New playlist, which `swimmer robot play` plays.
+
+    Returns
+    -------
+    Result
+        ``steps``, a table of gaits and cycles; ``duration_s``, ``reached``, ``off_m``, …
+
+    Raises
+    ------
+    BadInput
+        If a value cannot be used.
+    Failed
+        If no plan reaches the target.
+
+    Examples
+    --------
+    >>> import swimmer as sw
+    >>> planned = sw.plan("robot", to=(0.2, 0.1), max_rate="200deg", max_angle="60deg", no_overlap=True)  # doctest: +SKIP
+    >>> planned.steps.to_pandas()  # doctest: +SKIP
     """
     with Run("plan") as run:
         run.swimmer(swimmer)

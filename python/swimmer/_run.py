@@ -20,7 +20,16 @@ PRESETS = ("purcell", "robot", "robot-slender", "perfect-fluid", "kinematic-snak
 
 
 class Doubt(UserWarning):
-    """What a command says beside its answer: something doubtful about what it was given, or about what it found."""
+    """Warning about a doubtful value, file or result.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> import swimmer as sw
+    >>> with warnings.catch_warnings():
+    ...     warnings.simplefilter("ignore", sw.Doubt)
+    ...     swum = sw.simulate(sw.Swimmer.preset("purcell").replace(chi=0.5), "circle:1")
+    """
 
 
 def warn(notes: Sequence[str], *, stacklevel: int) -> None:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from . import _swimmer
 from ._run import Text, warn
 from ._swimmer import Gait
+from .optimize import Angle
 from .results import Result
 from .robot import settings
 
@@ -22,7 +23,14 @@ __all__ = ["Comparison", "Plan", "PlannedGait", "plan", "report", "run", "status
 
 
 class PlannedGait(Result):
-    """A gait of an experiment with its prediction."""
+    """A gait of an experiment with its prediction.
+
+    Examples
+    --------
+    >>> import swimmer as sw
+    >>> planned = sw.experiment.plan("missing.toml")  # doctest: +SKIP
+    >>> sw.simulate("robot", planned.gaits[0].gait)  # doctest: +SKIP
+    """
 
     __slots__ = ("_gait",)
     _gait: Gait
@@ -33,24 +41,59 @@ class PlannedGait(Result):
 
     @property
     def gait(self) -> Gait:
-        """The gait itself, to simulate, certify or play."""
+        """The `Gait`, to simulate, certify or play."""
         return self._gait
 
     def plot(self, ax: "Axes | None" = None, **line: Any) -> "Axes":
-        """Draws the gait in the plane of joint angles (matplotlib)."""
+        """Draws the gait in the plane of joint angles (matplotlib).
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Axes to draw in; a new figure unless given.
+        **line
+            Style, for `Axes.plot`.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes.
+
+        Raises
+        ------
+        ImportError
+            If matplotlib is missing.
+
+        Examples
+        --------
+        >>> import swimmer as sw
+        >>> sw.experiment.plan("missing.toml").gaits[0].plot()  # doctest: +SKIP
+        """
         from . import _plot
 
         return _plot.gait(self._gait, ax, **line)
 
 
 class Plan(Result):
-    """A planned experiment: its `gaits` are `PlannedGait`s, its `trials` the order in which they are played."""
+    """A planned experiment: its ``gaits`` are a table of `PlannedGait`, its ``trials`` the order in which they are played.
+
+    Examples
+    --------
+    >>> import swimmer as sw
+    >>> sw.experiment.plan("missing.toml").gaits.to_pandas()  # doctest: +SKIP
+    """
 
     __slots__ = ()
 
 
 class Comparison(Result):
-    """Measured against predicted displacement, and each optimum against its neighbours."""
+    """Measured against predicted displacement, and each optimum against its neighbours.
+
+    Examples
+    --------
+    >>> import swimmer as sw
+    >>> sw.experiment.report("missing.toml").gaits.to_pandas()  # doctest: +SKIP
+    """
 
     __slots__ = ()
 
@@ -60,7 +103,7 @@ class Comparison(Result):
         Parameters
         ----------
         ax : matplotlib.axes.Axes, optional
-            Axes to draw in.
+            Axes to draw in; a new figure unless given.
         **points
             Style of the measured points, for `Axes.errorbar`.
 
@@ -73,6 +116,11 @@ class Comparison(Result):
         ------
         ImportError
             If matplotlib is missing.
+
+        Examples
+        --------
+        >>> import swimmer as sw
+        >>> sw.experiment.report("missing.toml").plot()  # doctest: +SKIP
         """
         from . import _plot
 
@@ -123,7 +171,9 @@ def run(
     front: str | None = None,
     back: str | None = None,
     body: str | None = None,
-    facing: float | None = None,
+    facing: Angle | None = None,
+    axes: str | None = None,
+    scale: float | None = None,
     key: Text | None = None,
     baud: int | None = None,
 ) -> Result:
@@ -144,8 +194,10 @@ def run(
         Source of the cameras' frames, as for `Robot`.
     front, back, body : str, optional
         Names of what the cameras see, as for `Robot`.
-    facing : float, optional
-        Heading of the robot at the start [rad], for reflectors without names.
+    facing : float or str, optional
+        Heading of the robot at the start [rad], or as ``90deg``, for reflectors without names.
+    axes, scale : optional
+        Axes and unit of the source, as for `Robot`.
     key : path, optional
         File of the robot's key.
     baud : int, optional
@@ -169,19 +221,7 @@ def run(
     >>> sw.experiment.run("missing.toml", "twin").done  # doctest: +SKIP
     55
     """
-    robot = settings(
-        port,
-        swimmer=None,
-        track=track,
-        front=front,
-        back=back,
-        body=body,
-        facing=facing,
-        key=key,
-        baud=baud,
-        log=None,
-        seed=1,
-    )
+    robot = settings(port, locals())
     return Result(_document(_swimmer.experiment_run(os.fspath(spec), _path(folder), robot)))
 
 

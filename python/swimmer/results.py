@@ -1,4 +1,4 @@
-"""What the functions return: frozen, with the JSON keys of the command line as attributes."""
+"""Results of the functions: frozen, with the JSON keys of the commands as attributes."""
 
 import html
 import math
@@ -13,15 +13,24 @@ from numpy.typing import NDArray
 from ._swimmer import BadInput, Gait, Swimmer
 
 if TYPE_CHECKING:
+    import pandas
     from matplotlib.axes import Axes
 
 Floats: TypeAlias = NDArray[np.float64]
 
 
 class Result(Mapping[str, Any]):
-    """One JSON document, or an object inside one: its keys are attributes and items, and nothing can be changed.
+    """A result: its keys are attributes and items, and it never changes.
 
-    Lists are tuples. A key that is a word of Python takes an underscore as an attribute: `certificate.pass_`.
+    The keys are those of the command's JSON document. Lists are tuples, and lists of results are a `Table`. Numbers that are not defined
+    are None. A key that is a word of Python takes an underscore as an attribute: ``certificate.pass_``.
+
+    Examples
+    --------
+    >>> import swimmer as sw
+    >>> swum = sw.simulate("purcell", "circle:70deg")
+    >>> swum.links_cross == swum["links_cross"]
+    True
     """
 
     __slots__ = ("_document",)
@@ -72,7 +81,19 @@ class Result(Mapping[str, Any]):
         return [name for kind in cls.__mro__ for name in getattr(kind, "__slots__", ()) if name.startswith("_") and not name.startswith("__")]
 
     def to_dict(self) -> dict[str, Any]:
-        """The document, as `json` reads it."""
+        """Returns the result as a dictionary of Python's own types.
+
+        Returns
+        -------
+        dict
+            The JSON document.
+
+        Examples
+        --------
+        >>> import json
+        >>> import swimmer as sw
+        >>> text = json.dumps(sw.simulate("purcell", "circle:70deg").to_dict())
+        """
         return {key: _thawed(value) for key, value in self._document.items()}
 
     def __repr__(self) -> str:
@@ -88,8 +109,59 @@ class Result(Mapping[str, Any]):
         return f"<table>{rows}</table>"
 
 
+class Table(tuple[Any, ...]):
+    """A tuple of results, which pandas takes as a table.
+
+    Examples
+    --------
+    >>> import swimmer as sw
+    >>> checks = sw.optimize.turning("purcell", max_angle=1.0).certificate.checks
+    >>> list(checks.to_pandas().columns)
+    ['name', 'value', 'tolerance', 'pass']
+    """
+
+    __slots__ = ()
+
+    def to_pandas(self) -> "pandas.DataFrame":
+        """Returns a table with a row for each result, and a column for each of its keys.
+
+        Keys of results inside a result are joined by a dot: ``certificate.pass``.
+
+        Returns
+        -------
+        pandas.DataFrame
+            The table; a key that a result does not have is missing there.
+
+        Raises
+        ------
+        ImportError
+            If pandas is missing.
+
+        Examples
+        --------
+        >>> import swimmer as sw
+        >>> atlas = sw.atlas("purcell", objective="displacement", max_angle=1.2, starts=2)
+        >>> bool(atlas.optima.to_pandas()["certificate.pass"].all())
+        True
+        """
+        try:
+            import pandas
+        except ImportError as error:
+            raise ImportError("tables are made by pandas, which is not installed; run `pip install pandas`") from error
+        return pandas.DataFrame([_row(result) for result in self])
+
+
 class OptimalGait(Result):
-    """An optimised gait with its certificate."""
+    """An optimised gait with its certificate.
+
+    Examples
+    --------
+    >>> import swimmer as sw
+    >>> best = sw.optimize.displacement("purcell", max_angle=1.2)
+    >>> swum = sw.simulate(best.swimmer, best.gait)
+    >>> abs(swum.displacement_over_length - best.displacement_over_length) < 1e-8
+    True
+    """
 
     __slots__ = ("_gait", "_swimmer")
     _gait: Gait
@@ -102,34 +174,108 @@ class OptimalGait(Result):
 
     @property
     def gait(self) -> Gait:
-        """The gait itself, to simulate, certify, save or sample."""
+        """The `Gait`, to simulate, certify, save or sample."""
         return self._gait
 
     @property
     def swimmer(self) -> Swimmer:
-        """The swimmer that it was made for."""
+        """The `Swimmer` of the gait."""
         return self._swimmer
 
     def to_gait_file(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
-        """Writes the gait file that the command writes with `-o`."""
+        """Writes the gait file.
+
+        Parameters
+        ----------
+        path : str or path
+            New file.
+        overwrite : bool, optional
+            With True, replaces a file that exists.
+
+        Raises
+        ------
+        BadInput
+            If the file exists.
+        Failed
+            If the file cannot be written.
+
+        Examples
+        --------
+        >>> import swimmer as sw
+        >>> sw.optimize.displacement("purcell").to_gait_file("best.gait")  # doctest: +SKIP
+        """
         if Path(path).exists() and not overwrite:
             raise BadInput(f"{os.fspath(path)} exists; name a new file, or replace it with overwrite=True")
         self._gait.save(path)
 
     def plot(self, ax: "Axes | None" = None, **line: Any) -> "Axes":
-        """The gait in the plane of joint angles (matplotlib)."""
+        """Draws the gait in the plane of joint angles (matplotlib).
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Axes to draw in; a new figure unless given.
+        **line
+            Style, for `Axes.plot`.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes.
+
+        Raises
+        ------
+        ImportError
+            If matplotlib is missing.
+
+        Examples
+        --------
+        >>> import swimmer as sw
+        >>> sw.optimize.displacement("purcell").plot()  # doctest: +SKIP
+        """
         from . import _plot
 
         return _plot.gait(self._gait, ax, **line)
 
 
 class Atlas(Result):
-    """Every local optimum that was found, best first: `optima` are `OptimalGait`s."""
+    """Every local optimum that was found: ``optima``, a table of `OptimalGait`, the best first.
+
+    Examples
+    --------
+    >>> import swimmer as sw
+    >>> atlas = sw.atlas("purcell", objective="displacement", max_angle=1.2, starts=2)
+    >>> all(optimum.certificate.pass_ for optimum in atlas.optima)
+    True
+    """
 
     __slots__ = ()
 
     def plot(self, ax: "Axes | None" = None, **line: Any) -> "Axes":
-        """All gaits in the plane of joint angles (matplotlib)."""
+        """Draws all gaits in the plane of joint angles (matplotlib).
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Axes to draw in; a new figure unless given.
+        **line
+            Style, for `Axes.plot`.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes.
+
+        Raises
+        ------
+        ImportError
+            If matplotlib is missing.
+
+        Examples
+        --------
+        >>> import swimmer as sw
+        >>> sw.atlas("purcell", objective="efficiency", starts=20).plot()  # doctest: +SKIP
+        """
         from . import _plot
 
         ax = _plot.plane(ax)
@@ -141,7 +287,15 @@ class Atlas(Result):
 
 
 class Trajectory(NamedTuple):
-    """The middle link's way: a row for each instant."""
+    """Path of the middle link: a row for each instant.
+
+    Examples
+    --------
+    >>> import swimmer as sw
+    >>> path = sw.simulate("purcell", "circle:70deg").trajectory
+    >>> path.phi.shape[1], path.pose.shape[1]
+    (2, 3)
+    """
 
     cycle: NDArray[np.int64]
     """Number of the cycle, from 0: shape (n,)."""
@@ -154,7 +308,15 @@ class Trajectory(NamedTuple):
 
 
 class Simulation(Result):
-    """One cycle swum in the model."""
+    """A gait that was swum in the model: the results of one cycle, and the trajectory.
+
+    Examples
+    --------
+    >>> import swimmer as sw
+    >>> swum = sw.simulate("purcell", "circle:70deg")
+    >>> bool(abs(swum.trajectory.pose[-1, 0] - swum.displacement_m) < 1e-9)
+    True
+    """
 
     __slots__ = ("_trajectory",)
     _trajectory: Trajectory
@@ -165,18 +327,49 @@ class Simulation(Result):
 
     @property
     def trajectory(self) -> Trajectory:
-        """The middle link's way through all `cycles`."""
+        """`Trajectory` of the middle link through all cycles."""
         return self._trajectory
 
     def plot(self, ax: "Axes | None" = None, **line: Any) -> "Axes":
-        """The middle link's way in the tank (matplotlib)."""
+        """Draws the path of the middle link in the tank (matplotlib).
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Axes to draw in; a new figure unless given.
+        **line
+            Style, for `Axes.plot`.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes.
+
+        Raises
+        ------
+        ImportError
+            If matplotlib is missing.
+
+        Examples
+        --------
+        >>> import swimmer as sw
+        >>> sw.simulate("purcell", "circle:70deg", cycles=3).plot()  # doctest: +SKIP
+        """
         from . import _plot
 
         return _plot.way(self._trajectory.pose, ax, **line)
 
 
 class HeightMap(Result):
-    """A height function over the square of joint angles, with its zero-level curves."""
+    """A height function over the square of joint angles, with its zero-level curves.
+
+    Examples
+    --------
+    >>> import swimmer as sw
+    >>> heights = sw.height_map("purcell", max_angle=2.5)
+    >>> bool(abs(heights.height[100, 100] - heights.at_origin_over_length) < 1e-9)
+    True
+    """
 
     __slots__ = ("_phi", "_height")
     _phi: Floats
@@ -189,23 +382,53 @@ class HeightMap(Result):
 
     @property
     def phi(self) -> Floats:
-        """The nodes of either joint [rad]: shape (201,)."""
+        """Nodes of either joint [rad]: shape (201,)."""
         return self._phi
 
     @property
     def height(self) -> Floats:
-        """H at the nodes, over L where the row is a length; [i, j] is at φ₁ = phi[i], φ₂ = phi[j]: shape (201, 201)."""
+        """Heights at the nodes, over L if they are lengths: shape (201, 201). ``[i, j]`` is at φ₁ = ``phi[i]``, φ₂ = ``phi[j]``."""
         return self._height
 
     def plot(self, ax: "Axes | None" = None, **filling: Any) -> "Axes":
-        """The map with its zero-level curves (matplotlib)."""
+        """Draws the map with its zero-level curves (matplotlib).
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Axes to draw in; a new figure unless given.
+        **filling
+            Style, for `Axes.contourf`.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes.
+
+        Raises
+        ------
+        ImportError
+            If matplotlib is missing.
+
+        Examples
+        --------
+        >>> import swimmer as sw
+        >>> sw.height_map("purcell").plot()  # doctest: +SKIP
+        """
         from . import _plot
 
         return _plot.height_map(self, ax, **filling)
 
 
 class Calibration(Result):
-    """Cycles measured in recordings and, for a campaign, the fitted parameters with their intervals."""
+    """Cycles measured in recordings and, for a campaign, the fitted parameters with their intervals.
+
+    Examples
+    --------
+    >>> import swimmer as sw
+    >>> fit = sw.calibrate("campaign.toml")  # doctest: +SKIP
+    >>> sw.optimize.displacement(fit.swimmer, robust=fit)  # doctest: +SKIP
+    """
 
     __slots__ = ("_swimmer",)
     _swimmer: Swimmer | None
@@ -216,7 +439,7 @@ class Calibration(Result):
 
     @property
     def swimmer(self) -> Swimmer | None:
-        """The fitted swimmer; None for a single run, which is not fitted."""
+        """The fitted `Swimmer`; None for a single recording, which is not fitted."""
         return self._swimmer
 
 
@@ -226,7 +449,8 @@ def _frozen(value: Any) -> Any:
     if isinstance(value, Mapping):
         return Result(value)
     if isinstance(value, list | tuple):
-        return tuple(_frozen(item) for item in value)
+        items = [_frozen(item) for item in value]
+        return Table(items) if all(isinstance(item, Result) for item in items) else tuple(items)
     # As in JSON: a number that is not defined is missing.
     if isinstance(value, float) and not math.isfinite(value):
         return None
@@ -239,6 +463,17 @@ def _thawed(value: Any) -> Any:
     if isinstance(value, tuple):
         return [_thawed(item) for item in value]
     return value
+
+
+def _row(result: Result, before: str = "") -> dict[str, Any]:
+    """Keys and values of a row, with those of results inside it."""
+    row: dict[str, Any] = {}
+    for key, value in result.items():
+        if isinstance(value, Result):
+            row.update(_row(value, f"{before}{key}."))
+        else:
+            row[before + key] = value
+    return row
 
 
 MANY = 8

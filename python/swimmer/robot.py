@@ -1,6 +1,5 @@
 """The robot: upload, play, stop, telemetry, and poses by the cameras."""
 
-import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from types import TracebackType
@@ -8,19 +7,29 @@ from typing import Any, Self
 
 from ._run import Text, warn
 from ._swimmer import BadInput, Gait, RobotLink, RobotSettings, Swimmer
+from .optimize import Angle
 from .results import Result
 
 
 @dataclass(frozen=True, slots=True)
 class Telemetry:
-    """A report of the robot."""
+    """A report of the robot.
+
+    Examples
+    --------
+    >>> import swimmer as sw
+    >>> with sw.Robot("twin") as robot:
+    ...     report = next(robot.telemetry(seconds=1))
+    >>> report.state
+    'stopped'
+    """
 
     time: float
     """Time of arrival on the clock of the port [s]."""
     robot_time: float
     """Time on the robot's clock [s]."""
     state: str
-    """`stopped`, `holding`, `starting`, `playing`, `paused`, `stopping`, `settling` or `e-stopped`."""
+    """``stopped``, ``holding``, ``starting``, ``playing``, ``paused``, ``stopping``, ``settling`` or ``e-stopped``."""
     cycles: float
     """Cycles done, with the fraction of the present one."""
     phi: tuple[float, float]
@@ -33,7 +42,16 @@ class Telemetry:
 
 @dataclass(frozen=True, slots=True)
 class Pose:
-    """Tracked pose of the middle link in the tank, with the standard deviations of its errors."""
+    """Tracked pose of the middle link in the tank, with the standard deviations of its errors.
+
+    Examples
+    --------
+    >>> import swimmer as sw
+    >>> with sw.Robot("twin") as robot:
+    ...     pose = next(robot.poses(seconds=1))
+    >>> pose.sigma_position < 1e-3
+    True
+    """
 
     time: float
     """Time of the exposure on the clock of the port [s]."""
@@ -49,34 +67,9 @@ class Pose:
     """Standard deviation of the heading [rad]."""
 
 
-def settings(
-    port: str | Sequence[str],
-    *,
-    swimmer: Swimmer | Text | None,
-    track: str | None,
-    front: str | None,
-    back: str | None,
-    body: str | None,
-    facing: float | None,
-    key: Text | None,
-    baud: int | None,
-    log: Text | None,
-    seed: int,
-) -> RobotSettings:
-    """Port and cameras as the extension takes them."""
-    return RobotSettings(
-        [port] if isinstance(port, str) else list(port),
-        swimmer=swimmer if swimmer is None or isinstance(swimmer, Swimmer) else Swimmer.load(swimmer),
-        track=track,
-        front=front,
-        back=back,
-        body=body,
-        facing=facing,
-        key=None if key is None else os.fspath(key),
-        baud=baud,
-        log=None if log is None else os.fspath(log),
-        seed=seed,
-    )
+def settings(port: str | Sequence[str], keywords: dict[str, object]) -> RobotSettings:
+    """Port and cameras as the extension takes them; it reads the keywords that it knows."""
+    return RobotSettings([port] if isinstance(port, str) else list(port), keywords)
 
 
 class Robot:
@@ -102,8 +95,12 @@ class Robot:
         Names of the reflectors at the ends of the middle link, ``Front`` and ``Back`` unless given.
     body : str, optional
         Name of a rigid body instead.
-    facing : float, optional
-        Heading of the robot at the start [rad], for reflectors without names.
+    facing : float or str, optional
+        Heading of the robot at the start [rad], or as ``90deg``, for reflectors without names.
+    axes : str, optional
+        Axes of the source that are the tank's x and y: ``x,-y`` for an image, ``z,x`` for Y up.
+    scale : float, optional
+        Metres per unit of the source.
     key : path, optional
         File of the robot's key.
     baud : int, optional
@@ -116,7 +113,7 @@ class Robot:
     Raises
     ------
     BadInput
-        If an argument cannot be used.
+        If a value cannot be used.
     Failed
         If the port cannot be opened, or no robot answers.
 
@@ -138,27 +135,15 @@ class Robot:
         front: str | None = None,
         back: str | None = None,
         body: str | None = None,
-        facing: float | None = None,
+        facing: Angle | None = None,
+        axes: str | None = None,
+        scale: float | None = None,
         key: Text | None = None,
         baud: int | None = None,
         log: Text | None = None,
         seed: int = 1,
     ) -> None:
-        self._link = RobotLink(
-            settings(
-                port,
-                swimmer=swimmer,
-                track=track,
-                front=front,
-                back=back,
-                body=body,
-                facing=facing,
-                key=key,
-                baud=baud,
-                log=log,
-                seed=seed,
-            )
-        )
+        self._link = RobotLink(settings(port, locals()))
         warn(self._link.notes, stacklevel=3)
 
     def __enter__(self) -> Self:
@@ -401,6 +386,12 @@ class Robot:
         ------
         Failed
             If the link is lost before the robot has stopped, which it then does by itself; or if the log cannot be written.
+
+        Examples
+        --------
+        >>> import swimmer as sw
+        >>> robot = sw.Robot("twin")
+        >>> robot.close()
         """
         warn(self._link.close(), stacklevel=3)
 

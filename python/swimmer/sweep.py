@@ -1,4 +1,4 @@
-"""Thousands of designs: `swimmer sweep …`. A spec becomes a plan in a folder, the plan is run, and its table is read with polars or pandas.
+"""Sweeps over thousands of designs: a spec becomes a plan in a folder, the plan is run, and its designs become one table.
 
 >>> import swimmer as sw
 >>> sw.sweep.plan("small.toml", output="small").tasks  # doctest: +SKIP
@@ -20,9 +20,32 @@ __all__ = ["map", "merge", "plan", "run", "status"]
 
 
 def plan(spec: Text, *, output: Text) -> Result:
-    """Makes an immutable plan of a spec (TOML) in the folder `output`: `plan` (its hash), `tasks`, `blocks`, `axes`.
+    """Makes an immutable plan of a spec.
 
-    Made again of the same spec it is the same; a folder with another one is refused.
+    The same spec gives the same plan again; a folder with another plan is refused.
+
+    Parameters
+    ----------
+    spec : path
+        Spec of the sweep (TOML).
+    output : path
+        Folder of the plan.
+
+    Returns
+    -------
+    Result
+        ``plan`` (its hash), ``tasks``, ``blocks``, ``axes``.
+
+    Raises
+    ------
+    BadInput
+        If the spec is invalid, or the folder holds another plan.
+
+    Examples
+    --------
+    >>> import swimmer as sw
+    >>> sw.sweep.plan("small.toml", output="small").tasks  # doctest: +SKIP
+    12
     """
     with Run("sweep", "plan", os.fspath(spec)) as run:
         run.options({"output": output})
@@ -30,10 +53,36 @@ def plan(spec: Text, *, output: Text) -> Result:
 
 
 def run(folder: Text, *, shard: str | None = None, threads: int | None = None) -> Result:
-    """Solves the designs of a plan that are not solved yet: `done`, `failed`, `blocks`, `blocks_skipped`, `seconds`.
+    """Solves the designs of a plan that are not solved yet.
 
-    `shard="2/7"` runs a part of the blocks. On Ctrl-C this returns at once, while the blocks that are being solved go on until this
-    Python ends; what is finished stays and is passed over the next time.
+    After Ctrl-C the finished blocks stay, and the same call goes on.
+
+    Parameters
+    ----------
+    folder : path
+        Folder of the plan.
+    shard : str, optional
+        Part of the blocks, as ``2/7``.
+    threads : int, optional
+        Number of threads, one for each core unless given.
+
+    Returns
+    -------
+    Result
+        ``done``, ``failed``, ``blocks``, ``blocks_skipped``, ``seconds``.
+
+    Raises
+    ------
+    BadInput
+        If a value cannot be used, or the folder holds no plan.
+    Failed
+        If the disk refuses.
+
+    Examples
+    --------
+    >>> import swimmer as sw
+    >>> sw.sweep.run("small", shard="1/2").failed  # doctest: +SKIP
+    0
     """
     with Run("sweep", "run", os.fspath(folder)) as run:
         run.options({"shard": shard, "threads": threads})
@@ -41,13 +90,61 @@ def run(folder: Text, *, shard: str | None = None, threads: int | None = None) -
 
 
 def status(folder: Text) -> Result:
-    """How far a sweep is, over all shards: `done` of `tasks`, `uncertified`, `warm`, `blocks_broken`, … and what a design costs, `cold_s`, `warm_s`."""
+    """Reports the progress of a sweep, over all shards.
+
+    Parameters
+    ----------
+    folder : path
+        Folder of the plan.
+
+    Returns
+    -------
+    Result
+        ``done`` of ``tasks``, ``uncertified``, ``warm``, ``blocks_broken``, …; ``cold_s`` and ``warm_s``, the cost of a design.
+
+    Raises
+    ------
+    BadInput
+        If the folder holds no plan.
+
+    Examples
+    --------
+    >>> import swimmer as sw
+    >>> sw.sweep.status("small").done  # doctest: +SKIP
+    12
+    """
     with Run("sweep", "status", os.fspath(folder)) as run:
         return Result(run.document())
 
 
 def merge(folder: Text, *, output: Text) -> Result:
-    """Writes all designs of a finished sweep as one Parquet table, sorted by key: `table` (its path), `certified`, `failed`, `sha256`."""
+    """Writes all designs of a finished sweep as one Parquet table, sorted by key.
+
+    Parameters
+    ----------
+    folder : path
+        Folder of the plan.
+    output : path
+        New table (.parquet), for polars or pandas.
+
+    Returns
+    -------
+    Result
+        ``table`` (its path), ``certified``, ``failed``, ``sha256``.
+
+    Raises
+    ------
+    BadInput
+        If the folder holds no plan.
+    Failed
+        If the sweep is not finished.
+
+    Examples
+    --------
+    >>> import swimmer as sw
+    >>> sw.sweep.merge("small", output="small.parquet").certified  # doctest: +SKIP
+    12
+    """
     with Run("sweep", "merge", os.fspath(folder)) as run:
         run.options({"output": output})
         return Result(run.document())
@@ -72,9 +169,39 @@ def map(
     output: Text | None = None,
     export: Text | None = None,
 ) -> Result:
-    """A finished grid over two of its axes: `designs`, `kinds`, `doubts`, …; `output` is its picture, `export` its numbers as JSON.
+    """Maps a finished grid over two of its axes.
 
-    `at={"drag.chi": 2}` takes the nearest value of another axis.
+    Parameters
+    ----------
+    folder : path
+        Folder of the plan.
+    across, up : str, optional
+        Names of the axes.
+    at : mapping of str to float, optional
+        Values of other axes, as ``{"drag.chi": 2}``; the nearest ones are taken.
+    quantity : str, optional
+        ``displacement``, ``efficiency``, ``speed``, ``amplitude``, ``rotation``, ``lateral``, ``structure`` or ``pareto``.
+    output : path, optional
+        New picture.
+    export : path, optional
+        New file (.json) with the numbers.
+
+    Returns
+    -------
+    Result
+        ``designs``, ``without_gait``, ``kinds``, ``doubts``, …
+
+    Raises
+    ------
+    BadInput
+        If a value cannot be used.
+    Failed
+        If the sweep is not finished.
+
+    Examples
+    --------
+    >>> import swimmer as sw
+    >>> sw.sweep.map("small", across="sphere.radius", up="drag.chi", output="map.svg")  # doctest: +SKIP
     """
     with Run("sweep", "map", os.fspath(folder)) as run:
         run.options(

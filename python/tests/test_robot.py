@@ -1,13 +1,16 @@
 """The robot on the twin: uploads, plays, stops, telemetry and poses, against the command and against the model."""
 
+import contextlib
 import json
 import math
 import os
 import signal
+import socket
 import subprocess
 import sys
 import threading
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -182,5 +185,30 @@ def test_a_robot_behind_a_terminal(tmp_path: Path) -> None:
                 assert (status.state, status.cause) == ("stopped", "link lost")
                 with pytest.raises(sw.BadInput, match="no cameras see this robot"):
                     next(twin.poses(seconds=1.0))
+            # A script that sees pixels, with y downwards: 0.4 mm each.
+            with camera_script({"Front": [750.0, 411.25], "Back": [750.0, 588.75]}) as port:
+                with sw.Robot(str(link), track=f"tcp:127.0.0.1:{port}", axes="x,-y", scale=0.0004) as twin:
+                    *_, pose = twin.poses(seconds=1.0)
+            assert (pose.x, pose.y, pose.heading) == pytest.approx((0.3, -0.2, math.pi / 2), abs=1e-6)
         finally:
             other.terminate()
+
+
+@contextlib.contextmanager
+def camera_script(points: dict[str, list[float]]) -> Iterator[int]:
+    """A script that sends the same points a hundred times a second; yields its port."""
+    ended = threading.Event()
+    with socket.create_server(("127.0.0.1", 0)) as server:
+
+        def stream() -> None:
+            connection, _ = server.accept()
+            with connection, contextlib.suppress(OSError):
+                while not ended.wait(0.01):
+                    frame = {"t": time.monotonic(), "points": points}
+                    connection.sendall(json.dumps(frame).encode() + b"\n")
+
+        sender = threading.Thread(target=stream)
+        sender.start()
+        yield server.getsockname()[1]
+        ended.set()
+        sender.join()

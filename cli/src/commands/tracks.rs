@@ -3,8 +3,10 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use calibrate::{TrackSurvey, survey_file};
+use calibrate::TrackSurvey;
+use operations::tracks::{self, Request};
 
+use crate::context::perform;
 use crate::failure::Outcome;
 use crate::output::Output;
 use crate::quantity::{Rows, Table};
@@ -59,9 +61,13 @@ impl fmt::Display for Text<'_> {
 impl Tracks {
     /// Surveys the file.
     pub(crate) fn run(self, output: Output) -> Outcome {
-        let survey = survey_file(&self.file, &self.recording.options())?;
+        let request = Request {
+            file: self.file,
+            recording: self.recording.request(),
+        };
+        let survey = perform(|context| tracks::run(&request, context))?;
         let text = Text {
-            file: &self.file,
+            file: &request.file,
             survey: &survey,
         };
         output.rendered(&survey, &text);

@@ -9,7 +9,7 @@ use host_link::robot::await_play::at_rest;
 use link_protocol::Telemetry;
 use pose_source::SourceName;
 use serde::Serialize;
-use swimmer_files::{AnyGait, GaitFile, SwimmerFile, check_playable_period};
+use swimmer_files::{AnyGait, Axes, GaitFile, SwimmerFile, check_playable_period};
 
 use super::access::{Access, RobotConnection};
 use super::motion::{PlayRequest, begin, until_end};
@@ -23,6 +23,7 @@ use super::upload::{Prepared, upload};
 use crate::captured::{CapturedFailure, Noted, noted};
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
+use crate::recording::LiveAxes;
 
 /// Holder of the port, as other processes see it.
 const HOLDER: &str = "a program that uses the library";
@@ -52,6 +53,10 @@ pub struct RobotOptions {
     pub body: Option<String>,
     /// Heading at the start, for reflectors without names \[rad\].
     pub facing_rad: Option<f64>,
+    /// Metres per unit of the source of frames.
+    pub scale: Option<f64>,
+    /// The source's axes that are the tank's x and y.
+    pub axes: Option<Axes>,
     /// Swimmer that the robot is, if no preset describes it; the truth in the tank of a fresh virtual robot.
     pub swimmer: Option<SwimmerFile>,
     /// Seed of a fresh virtual robot.
@@ -79,6 +84,7 @@ impl RobotOptions {
             self.back.clone(),
             self.body.clone(),
             self.facing_rad,
+            LiveAxes::new(self.scale, self.axes),
         );
         Ok(Some(Tracked::new(source, visible)))
     }

@@ -73,19 +73,20 @@ impl Tracked {
 }
 
 impl Visible {
-    /// Names of the reflectors or of the rigid body; the source has its usual axes. `None` for the usual names.
+    /// Names of the reflectors or of the rigid body, and the source's axes. `None` for the usual names.
     pub(crate) fn new(
         front: Option<String>,
         back: Option<String>,
         body: Option<String>,
         facing: Option<f64>,
+        axes: LiveAxes,
     ) -> Self {
         Self {
             front,
             back,
             body,
             facing,
-            axes: LiveAxes::default(),
+            axes,
         }
     }
 
