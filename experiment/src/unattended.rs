@@ -5,6 +5,9 @@
 //!  (TOML)  (order)  (poses and events in, requests out)
 //! ```
 //!
+//! In an adaptive campaign ([`AdaptiveSpec`]) the plan names the gaits, and the journal the trials: [`crate::adaptive`] chooses each one by
+//! those before.
+//!
 //! - [`Spec`]: the gaits, repeats, start pose and stop rules, as a person writes them.
 //! - [`Plan`]: the ordered list of [`Trial`]s. The same spec and seed give the same plan.
 //! - [`Run`]: the state machine of one trial after the other.
@@ -18,7 +21,7 @@ mod run;
 mod spec;
 
 pub use compare::{Better, Comparison, GaitSummary, Measure, compare};
-pub use journal::{Entry, Journal, JournalError, MeasuredCycle, Record};
+pub use journal::{Entry, Journal, JournalError, MeasuredCycle, Record, TrialQuantities};
 pub use plan::{LeftOut, Plan, PlannedGait, Trial, randomised};
 pub use run::{Request, Run, RunEnding};
-pub use spec::{GaitSource, Spec, SpecGait, SpecPeriod, StartPose, StopRules};
+pub use spec::{AdaptiveSpec, GaitSource, Spec, SpecGait, SpecPeriod, StartPose, StopRules};

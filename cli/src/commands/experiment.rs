@@ -1,5 +1,6 @@
 //! `swimmer experiment`: gaits × repeats in randomised blocks, unattended, resumable, compared.
 
+mod adaptive;
 mod campaign;
 mod folder;
 mod gaits;

@@ -197,6 +197,118 @@ fn packed(folder: &Path) {
     );
 }
 
+const CAMPAIGN: &str = r#"
+swimmer = "robot"
+drive = "straight"
+cycles = 2
+period = 6.0
+settle = 1.0
+[adaptive]
+chi = 0.002
+sphere_radius = 0.0003
+hours = 0.3
+[tank]
+length = 1.6
+width = 1.2
+[start]
+within = 0.02
+within_angle = "5deg"
+[[gait]]
+name = "small"
+gait = "circle:40deg"
+[[gait]]
+name = "middle"
+gait = "circle:70deg"
+[[gait]]
+name = "large"
+gait = "circle:100deg"
+"#;
+
+/// Gaits that an adaptive campaign has chosen, by the numbers of their trials.
+fn chosen(journal: &[Value]) -> Vec<(u64, String)> {
+    let chosen = journal.iter().filter_map(|record| {
+        let chosen = &record["entry"]["chosen"];
+        Some((
+            chosen["trial"].as_u64()?,
+            chosen["gait"].as_str()?.to_owned(),
+        ))
+    });
+    chosen.collect()
+}
+
+/// The campaign chooses its gaits until both intervals are as narrow as requested. Killed on the way, it chooses on by its journal.
+#[test]
+fn an_adaptive_campaign_reaches_its_goal() {
+    let laboratory = laboratory();
+    let folder = laboratory.path();
+    std::fs::write(folder.join("spec.toml"), CAMPAIGN).unwrap();
+    let planned = swimmer_in(folder, &["experiment", "plan", "spec.toml"]).with_status(0);
+    assert!(
+        planned.stdout.contains("An adaptive campaign of 3 gaits"),
+        "{planned}"
+    );
+
+    let mut child = command(folder, &RUN)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let begun = Instant::now();
+    while chosen(&journal(folder)).len() < 3 {
+        let is_running = child.try_wait().unwrap().is_none();
+        assert!(is_running && begun.elapsed() < Duration::from_mins(4));
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let before = journal(folder);
+
+    let words = [&RUN[..], &["--json"]].concat();
+    let ran = swimmer_in(folder, &words).with_status(0).json();
+    println!("{ran:#}");
+    let records = journal(folder);
+    assert_eq!(before, records[..before.len()], "nothing is lost");
+    let gaits = chosen(&records);
+    let numbers: Vec<u64> = gaits.iter().map(|(number, _)| *number).collect();
+    assert_eq!(
+        numbers,
+        finished(&records),
+        "each trial was chosen once, and played"
+    );
+    let first: BTreeSet<&str> = gaits[..3].iter().map(|(_, gait)| gait.as_str()).collect();
+    assert_eq!(
+        first.len(),
+        3,
+        "the first trials play different gaits: {gaits:?}"
+    );
+    assert_eq!(records.last().unwrap()["entry"], "complete");
+
+    let advice = &ran["adaptive"];
+    assert_eq!(advice["decision"], "reached", "{ran:#}");
+    // The virtual tank holds the swimmer of the spec.
+    let fit = &advice["estimate"];
+    for (value, half, truth, goal) in [
+        ("chi", "chi_half_width", 3.598, 0.002 * 3.598),
+        (
+            "sphere_radius_m",
+            "sphere_radius_half_width_m",
+            0.0692,
+            3e-4,
+        ),
+    ] {
+        assert!(number(fit, half) <= 1.01 * goal, "{fit:#}");
+        assert!((number(fit, value) - truth).abs() <= 3.0 * goal, "{fit:#}");
+    }
+    let words = ["experiment", "status", "spec.toml"];
+    let status = swimmer_in(folder, &words).with_status(0);
+    assert!(status.stdout.contains("as narrow as requested"), "{status}");
+    let words = ["experiment", "report", "spec.toml", "--json"];
+    let report = swimmer_in(folder, &words).with_status(0).json();
+    assert_eq!(report["adaptive"], *advice);
+    let page = std::fs::read_to_string(folder.join("spec/report.html")).unwrap();
+    assert!(page.contains("The calibration so far"));
+}
+
 #[test]
 fn mistakes_are_refused_before_anything_moves() {
     let laboratory = laboratory();

@@ -7,6 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::{Deserialize, Serialize};
 
 use super::{Plan, Trial};
+use crate::adaptive::MeasuredTrial;
 
 /// Line of the journal.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -66,6 +67,22 @@ pub enum Entry {
         /// Number of the trial.
         trial: u32,
     },
+    /// An adaptive campaign chose its next trial.
+    Chosen {
+        /// Number of the trial.
+        trial: u32,
+        /// Its gait.
+        gait: String,
+    },
+    /// The track of a finished trial of an adaptive campaign was measured.
+    Measured {
+        /// Number of the trial.
+        trial: u32,
+        /// Its quantities; `None` if the track cannot be used.
+        quantities: Option<TrialQuantities>,
+        /// Reason for which it cannot be used.
+        problem: Option<String>,
+    },
     /// The run ended early; another run goes on.
     Interrupted {
         /// Reason.
@@ -86,6 +103,24 @@ pub struct MeasuredCycle {
     pub turn_rad: f64,
     /// Half width of the 95 % interval of x and y by the noise of the cameras \[m\].
     pub interval_m: f64,
+}
+
+/// Quantities of a trial by which χ and r_s are fitted: means over its cycles, with their standard errors by the scatter of the cycles
+/// (`None` for a single cycle).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct TrialQuantities {
+    /// X \[m\].
+    pub x_m: f64,
+    /// Standard error of X \[m\].
+    pub x_se_m: Option<f64>,
+    /// ΔY \[m\].
+    pub delta_y_m: f64,
+    /// Standard error of ΔY \[m\].
+    pub delta_y_se_m: Option<f64>,
+    /// Δθ \[rad\].
+    pub delta_theta_rad: f64,
+    /// Standard error of Δθ \[rad\].
+    pub delta_theta_se_rad: Option<f64>,
 }
 
 /// Invalid journal.
@@ -176,10 +211,15 @@ impl Journal {
     /// [`JournalError::OtherPlan`].
     pub fn check(&self, plan: &Plan) -> Result<(), JournalError> {
         let hash = plan.sha256();
+        let plan = plan.with_chosen(self);
         for (index, record) in self.records.iter().enumerate() {
             let other = match &record.entry {
                 Entry::Opened { plan, .. } => *plan != hash,
-                Entry::Started { trial, .. }
+                Entry::Chosen { gait, .. } => {
+                    plan.gaits.iter().all(|planned| planned.name != *gait)
+                }
+                Entry::Measured { trial, .. }
+                | Entry::Started { trial, .. }
                 | Entry::Finished { trial, .. }
                 | Entry::Failed { trial, .. }
                 | Entry::GivenUp { trial } => plan.trial(*trial).is_none(),
@@ -208,6 +248,77 @@ impl Journal {
             _ => None,
         });
         given_up.collect()
+    }
+
+    /// Attempts that failed since the last finished trial of the present run.
+    pub fn failures_in_a_row(&self) -> u32 {
+        let is_reset = |entry: &Entry| {
+            matches!(
+                entry,
+                Entry::Opened { .. } | Entry::Finished { .. } | Entry::Interrupted { .. }
+            )
+        };
+        let latest = self.records.iter().rev().map(|record| &record.entry);
+        let failed = latest
+            .take_while(|entry| !is_reset(entry))
+            .filter(|entry| matches!(entry, Entry::Failed { .. }));
+        failed.fold(0, |failures, _| failures + 1)
+    }
+
+    /// Trials that an adaptive campaign has chosen, with their gaits.
+    pub fn chosen(&self) -> impl Iterator<Item = (u32, &str)> {
+        self.records
+            .iter()
+            .filter_map(|record| match &record.entry {
+                Entry::Chosen { trial, gait } => Some((*trial, gait.as_str())),
+                _ => None,
+            })
+    }
+
+    /// Trials of an adaptive campaign whose tracks were measured; `None` for a track that cannot be used.
+    pub fn quantities(&self) -> BTreeMap<u32, Option<TrialQuantities>> {
+        let measured = self
+            .records
+            .iter()
+            .filter_map(|record| match &record.entry {
+                Entry::Measured {
+                    trial, quantities, ..
+                } => Some((*trial, *quantities)),
+                _ => None,
+            });
+        measured.collect()
+    }
+
+    /// Measured trials of an adaptive campaign; the index of a gait is that in the plan.
+    pub fn measured_trials(&self, plan: &Plan) -> Vec<MeasuredTrial> {
+        let plan = plan.with_chosen(self);
+        let quantities = self.quantities();
+        let measured = plan.trials.iter().filter_map(|trial| {
+            let candidate = plan.gaits.iter().position(|gait| gait.name == trial.gait)?;
+            let of = quantities.get(&trial.number)?;
+            let nan = [f64::NAN; 3];
+            let (values, standard_errors) = of.map_or((nan, nan), |of| {
+                let errors = [of.x_se_m, of.delta_y_se_m, of.delta_theta_se_rad];
+                (
+                    [of.x_m, of.delta_y_m, of.delta_theta_rad],
+                    errors.map(|error| error.unwrap_or(f64::NAN)),
+                )
+            });
+            Some(MeasuredTrial {
+                candidate,
+                values,
+                standard_errors,
+            })
+        });
+        measured.collect()
+    }
+
+    /// Track file of a finished trial, in the folder of the experiment.
+    pub fn track(&self, number: u32) -> Option<&str> {
+        self.records.iter().find_map(|record| match &record.entry {
+            Entry::Finished { trial, track, .. } if *trial == number => Some(track.as_str()),
+            _ => None,
+        })
     }
 
     /// Trials of a plan that are neither finished nor given up, in their order.
@@ -262,6 +373,47 @@ impl Journal {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// An adaptive campaign runs its trials one by one: failures of one trial count for the next, but not for another run.
+    #[test]
+    fn failures_in_a_row_are_counted_over_the_trials_of_a_run() {
+        let failed = |trial| Entry::Failed {
+            trial,
+            attempt: 1,
+            reason: String::new(),
+        };
+        let opened = Entry::Opened {
+            plan: String::new(),
+            version: String::new(),
+            log: None,
+        };
+        let finished = Entry::Finished {
+            trial: 2,
+            attempt: 1,
+            track: String::new(),
+            began_s: 0.0,
+            cycles: Vec::new(),
+            departure: None,
+        };
+        let interrupted = Entry::Interrupted {
+            reason: String::new(),
+        };
+        let mut journal = Journal::default();
+        for (entry, expected) in [
+            (failed(1), 1),
+            (Entry::GivenUp { trial: 1 }, 1),
+            (failed(2), 2),
+            (finished, 0),
+            (failed(3), 1),
+            (interrupted, 0),
+            (failed(3), 1),
+            (opened, 0),
+        ] {
+            let (at_unix_s, text) = (0.0, format!("{entry:?}"));
+            journal.records.push(Record { at_unix_s, entry });
+            assert_eq!(journal.failures_in_a_row(), expected, "{text}");
+        }
+    }
 
     #[test]
     fn a_damaged_line_in_the_middle_is_refused() {

@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use super::{Measure, StartPose, StopRules};
+use super::{AdaptiveSpec, Journal, Measure, StartPose, StopRules};
 
 /// Ordered list of trials, with the gaits that they play. It does not change once it is written.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -28,6 +28,9 @@ pub struct Plan {
     pub gaits: Vec<PlannedGait>,
     /// Neighbours that the robot would refuse.
     pub left_out: Vec<LeftOut>,
+    /// Goal of an adaptive campaign, whose trials the journal names as they are chosen.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub adaptive: Option<AdaptiveSpec>,
     /// Trials in their order.
     pub trials: Vec<Trial>,
 }
@@ -110,11 +113,36 @@ impl Plan {
         None
     }
 
-    /// SHA-256 of the plan's content, by which a journal names its plan.
+    /// SHA-256 of the plan's content, by which a journal names its plan. Chosen trials of an adaptive campaign are not part of it.
     pub fn sha256(&self) -> String {
         // A plan consists of numbers and texts, which always have a JSON form.
-        let text = serde_json::to_vec(self).unwrap_or_default();
-        hexadecimal(&text)
+        let text = if self.adaptive.is_some() {
+            let trials = Vec::new();
+            serde_json::to_vec(&Self {
+                trials,
+                ..self.clone()
+            })
+        } else {
+            serde_json::to_vec(self)
+        };
+        hexadecimal(&text.unwrap_or_default())
+    }
+
+    /// The plan with the trials that the journal of an adaptive campaign has chosen; any other plan as it is.
+    #[must_use]
+    pub fn with_chosen(&self, journal: &Journal) -> Self {
+        let mut plan = self.clone();
+        if self.adaptive.is_some() {
+            plan.trials = journal
+                .chosen()
+                .map(|(number, gait)| Trial {
+                    number,
+                    block: number,
+                    gait: gait.to_owned(),
+                })
+                .collect();
+        }
+        plan
     }
 }
 
@@ -178,6 +206,7 @@ impl super::Spec {
             trials: randomised(&names, self.repeats, self.seed),
             gaits,
             left_out,
+            adaptive: self.adaptive,
         }
     }
 }

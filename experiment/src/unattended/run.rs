@@ -125,7 +125,7 @@ impl Run {
             gaits,
             start,
             stop,
-            failures_in_a_row: 0,
+            failures_in_a_row: journal.failures_in_a_row(),
             phase: Phase::Between,
             requests: VecDeque::new(),
             last_seen_s: None,

@@ -4,9 +4,11 @@ use std::ops::Range;
 use std::path::Path;
 
 use forecast::Tank;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use swimmer_files::{FileError, GaitSpec, check_playable_period, parse_angle};
 use toml::Spanned;
+
+use crate::adaptive::CampaignGoal;
 
 /// Most repeats, cycles, gaits and attempts: more is a slip of the keyboard.
 const MOST: u32 = 10_000;
@@ -54,8 +56,10 @@ pub struct Spec {
     pub start: StartPose,
     /// Gaits, in the file's order.
     pub gaits: Vec<SpecGait>,
-    /// Repeats of each gait; each repeat is a block.
+    /// Repeats of each gait; each repeat is a block. 0 in an adaptive campaign.
     pub repeats: u32,
+    /// Goal of an adaptive campaign; `None`: every gait is repeated as often as the others.
+    pub adaptive: Option<AdaptiveSpec>,
     /// Cycles of a trial before those that count: the servos take up their dead band.
     pub run_in: u32,
     /// Seconds at rest before a trial, for the fluid to come to rest.
@@ -96,6 +100,32 @@ pub struct SpecGait {
     pub period: SpecPeriod,
     /// Counted cycles of a trial.
     pub cycles: u32,
+}
+
+/// Goal of an adaptive campaign.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct AdaptiveSpec {
+    /// Half width of the interval of χ, as a share of χ.
+    pub chi_share: f64,
+    /// Half width of the interval of r_s \[m\].
+    pub sphere_radius_m: f64,
+    /// Longest tank time, of rests and plays \[s\].
+    pub budget_s: f64,
+    /// Expected standard deviation of a length in a trial \[m\].
+    pub accuracy_m: f64,
+}
+
+impl AdaptiveSpec {
+    /// The goal with intervals of this level.
+    pub fn goal(&self, level: f64) -> CampaignGoal {
+        CampaignGoal {
+            chi_share: self.chi_share,
+            sphere_radius_m: self.sphere_radius_m,
+            level,
+            budget_s: self.budget_s,
+            accuracy_m: self.accuracy_m,
+        }
+    }
 }
 
 /// Origin of a gait.
@@ -146,7 +176,8 @@ enum RawPeriod {
 struct Raw {
     swimmer: String,
     drive: Option<String>,
-    repeats: Spanned<u32>,
+    repeats: Option<Spanned<u32>>,
+    adaptive: Option<RawAdaptive>,
     cycles: Option<Spanned<u32>>,
     run_in: Option<Spanned<u32>>,
     period: Option<Spanned<RawPeriod>>,
@@ -168,6 +199,15 @@ struct RawTank {
     length: f64,
     width: f64,
     margin: Option<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawAdaptive {
+    chi: Option<Spanned<f64>>,
+    sphere_radius: Option<Spanned<f64>>,
+    hours: Option<Spanned<f64>>,
+    accuracy: Option<Spanned<f64>>,
 }
 
 #[derive(Deserialize, Default)]
@@ -359,7 +399,12 @@ impl Spec {
                 within_rad: place.angle(start.within_angle.as_ref(), 2_f64.to_radians())?,
             },
             gaits,
-            repeats: place.count(Some(&raw.repeats), 5, 1)?,
+            repeats: read_repeats(&place, &raw)?,
+            adaptive: raw
+                .adaptive
+                .as_ref()
+                .map(|raw| read_adaptive(&place, raw))
+                .transpose()?,
             run_in: place.count(raw.run_in.as_ref(), 1, 0)?,
             settle_s: place.number(
                 raw.settle.as_ref(),
@@ -394,6 +439,49 @@ impl Spec {
 struct Defaults {
     period: SpecPeriod,
     cycles: u32,
+}
+
+/// Repeats of each gait, or 0 for an adaptive campaign.
+fn read_repeats(place: &Text<'_>, raw: &Raw) -> Result<u32, FileError> {
+    match (&raw.repeats, &raw.adaptive) {
+        (Some(repeats), None) => place.count(Some(repeats), 1, 1),
+        (None, Some(_)) => Ok(0),
+        (Some(repeats), Some(_)) => {
+            let problem = "an [adaptive] campaign has no `repeats`: it plays each gait as often as that helps";
+            Err(place.wrong(&repeats.span(), problem))
+        }
+        (None, None) => {
+            let problem = "no `repeats`: say how often each gait is played, or give the goal of an [adaptive] campaign";
+            Err(place.wrong(&(0..0), problem))
+        }
+    }
+}
+
+fn read_adaptive(place: &Text<'_>, raw: &RawAdaptive) -> Result<AdaptiveSpec, FileError> {
+    let share = |value: f64| value > 0.0 && value < 1.0;
+    let length = |value: f64| value > 0.0 && value < LARGEST_M;
+    let hours = place.number(
+        raw.hours.as_ref(),
+        10.0,
+        |hours| hours > 0.0 && hours <= 8760.0,
+        "no time in hours up to a year",
+    )?;
+    Ok(AdaptiveSpec {
+        chi_share: place.number(
+            raw.chi.as_ref(),
+            0.01,
+            share,
+            "no share between 0 and 1, as 0.01 for χ ± 1 %",
+        )?,
+        sphere_radius_m: place.number(
+            raw.sphere_radius.as_ref(),
+            1e-3,
+            length,
+            "no length in metres",
+        )?,
+        budget_s: 3600.0 * hours,
+        accuracy_m: place.number(raw.accuracy.as_ref(), 1e-3, length, "no length in metres")?,
+    })
 }
 
 fn read_gait(
@@ -524,6 +612,21 @@ mod tests {
             (
                 format!("{GOOD}[start]\nheading = 90\n"),
                 "s.toml:9:11: 90 is no angle",
+            ),
+            (
+                format!("{GOOD}[adaptive]\n"),
+                "s.toml:2:11: an [adaptive] campaign",
+            ),
+            (
+                GOOD.replace("repeats = 2\n", ""),
+                "s.toml:1:1: no `repeats`",
+            ),
+            (
+                format!(
+                    "{}[adaptive]\nchi = 1.5\n",
+                    GOOD.replace("repeats = 2\n", "")
+                ),
+                "s.toml:8:7: 1.5 is no share",
             ),
         ];
         for (text, expected) in cases {

@@ -64,6 +64,7 @@ fn plan(gaits: Vec<PlannedGait>, repeats: u32) -> Plan {
         trials: randomised(&names, repeats, 5),
         gaits,
         left_out: Vec::new(),
+        adaptive: None,
     }
 }
 

@@ -79,12 +79,17 @@ impl Folder {
         if let Some(problem) = plan.problem() {
             return Err(bad(problem));
         }
-        Ok(Self {
+        let mut folder = Self {
             spec: Spec::load(&path.join(SPEC))?,
             swimmer: SwimmerFile::load(&path.join(SWIMMER))?,
             plan,
             path: path.to_path_buf(),
-        })
+        };
+        if folder.plan.adaptive.is_some() {
+            let journal = folder.journal()?;
+            folder.plan = folder.plan.with_chosen(&journal);
+        }
+        Ok(folder)
     }
 
     /// Curve of a gait.

@@ -91,15 +91,27 @@ fn tank_time_s(plan: &Plan) -> f64 {
 
 impl fmt::Display for PlanOutput {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(
-            f,
-            "{} trials of {} gaits in {} blocks, {:.1} h of plays and rests, planned in {}",
-            self.runs,
-            self.plan.gaits.len(),
-            self.plan.repeats,
-            self.tank_time_s / 3600.0,
-            self.folder
-        )?;
+        if let Some(adaptive) = &self.plan.adaptive {
+            writeln!(
+                f,
+                "An adaptive campaign of {} gaits to χ ± {} % and r_s ± {} in at most {} h of rests and plays, planned in {}",
+                self.plan.gaits.len(),
+                100.0 * adaptive.chi_share,
+                quantity::length(adaptive.sphere_radius_m),
+                adaptive.budget_s / 3600.0,
+                self.folder
+            )?;
+        } else {
+            writeln!(
+                f,
+                "{} trials of {} gaits in {} blocks, {:.1} h of plays and rests, planned in {}",
+                self.runs,
+                self.plan.gaits.len(),
+                self.plan.repeats,
+                self.tank_time_s / 3600.0,
+                self.folder
+            )?;
+        }
         for gait in &self.plan.gaits {
             writeln!(
                 f,

@@ -2,10 +2,12 @@
 
 use std::fmt;
 
+use experiment::adaptive::CampaignAdvice;
 use experiment::unattended::{Comparison, Measure, compare};
 use serde::Serialize;
 use swimmer_files::write_atomically;
 
+use super::adaptive::{Campaign, in_words};
 use super::folder::{Folder, PAGE, REPORT};
 use super::{ExperimentPaths, campaign};
 use crate::failure::Outcome;
@@ -30,6 +32,9 @@ pub(crate) struct ReportOutput {
     #[serde(flatten)]
     comparison: Comparison,
     report: String,
+    /// Fit of an adaptive campaign.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    adaptive: Option<CampaignAdvice>,
     /// Campaign of the finished trials for `swimmer calibrate`; `null` without one.
     campaign: Option<String>,
 }
@@ -49,13 +54,18 @@ pub(crate) fn report(paths: &ExperimentPaths) -> Outcome<ReportOutput> {
     let folder = Folder::of(paths)?;
     let journal = folder.journal()?;
     let comparison = compare(&folder.plan, &journal);
-    let html = page(&folder.plan, &folder.swimmer.name, &comparison)?;
+    let advice = Campaign::of(&folder)?
+        .map(|campaign| campaign.advice(&folder, &journal))
+        .transpose()?;
+    let fit = advice.as_ref().map(in_words);
+    let html = page(&folder.plan, &folder.swimmer.name, &comparison, fit)?;
     let path = folder.path.join(PAGE);
     write_atomically(&path, html.as_bytes())?;
     write_atomically(&folder.path.join(REPORT), document(&comparison).as_bytes())?;
     let campaign = campaign::write(&folder, &journal)?;
     Ok(ReportOutput {
         comparison,
+        adaptive: advice,
         report: path.display().to_string(),
         campaign: campaign.map(|path| path.display().to_string()),
     })
@@ -103,6 +113,9 @@ impl fmt::Display for ReportOutput {
                 "  {} {verdict} {}: {difference}, p = {p}",
                 one.better, one.than
             )?;
+        }
+        if let Some(advice) = &self.adaptive {
+            writeln!(f, "{}", in_words(advice))?;
         }
         write!(f, "The report is {}.", self.report)?;
         if let Some(campaign) = &self.campaign {

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::path::PathBuf;
 
+use experiment::adaptive::{CampaignAdvice, Decision};
 use experiment::unattended::{Entry, Journal, Plan, Request, Run, RunEnding};
 use experiment::{Course, Event, GaitOnRobot};
 use forecast::{Planner, Played, PlaylistTable, Servos};
@@ -12,12 +13,13 @@ use link_protocol::MAX_KNOTS;
 use serde::Serialize;
 
 use super::ExperimentPaths;
+use super::adaptive::{Campaign, in_words, measure};
 use super::folder::{DRIVE, Folder, JournalFile};
 use crate::commands::plan::family_in;
 use crate::commands::robot::{Access, Bench, Tracked, table_of};
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
-use crate::output::Output;
+use crate::output::{Output, aside};
 use crate::progress::Progress;
 
 /// Play the trials of a plan that are not finished yet, each from the start pose
@@ -46,6 +48,9 @@ pub(crate) struct RunOutput {
     /// Trials that this run finished.
     finished_now: usize,
     duration_s: f64,
+    /// Fit of an adaptive campaign.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    adaptive: Option<CampaignAdvice>,
 }
 
 /// Gait ready to be played.
@@ -73,11 +78,16 @@ pub(crate) fn play(
     tracked: &Tracked,
     interrupt: Interrupt,
 ) -> Outcome<RunOutput> {
-    let folder = Folder::of(paths)?;
-    let (mut file, journal) = JournalFile::open(&folder)?;
+    let mut folder = Folder::of(paths)?;
+    let (mut file, mut journal) = JournalFile::open(&folder)?;
+    let campaign = Campaign::of(&folder)?;
+    if let Some(campaign) = &campaign {
+        measure(&folder, &mut file, &journal, tracked)?;
+        journal = choose(&mut folder, &mut file, campaign)?;
+    }
     let left = journal.remaining(&folder.plan).len();
     if left == 0 {
-        return Ok(done(&folder, &journal, 0, 0.0));
+        return done(&folder, &journal, 0, 0.0);
     }
     let number = opened(&journal) + 1;
     let log = format!("logs/run-{number}.mcap");
@@ -97,55 +107,65 @@ pub(crate) fn play(
         version: env!("CARGO_PKG_VERSION").to_owned(),
         log: Some(log),
     })?;
-    let spec = &folder.spec;
-    let mut run = Run::new(
-        &folder.plan,
-        &journal,
-        planner.clone(),
-        gaits,
-        spec.start,
-        spec.stop,
-    );
+    journal = folder.journal()?;
     let began = bench.now_s();
-    let progress = Progress::of_steps(left as u64);
-    let mut executor = Executor {
-        folder: &folder,
-        file: &mut file,
-        bench: &mut bench,
-        planner: &planner,
-        playable: &playable,
-    };
+    let mut finished = 0;
     let ending = loop {
-        for event in executor.bench.advance()? {
-            run.event(event);
-        }
-        while let Some(request) = run.poll(executor.bench.now_s()) {
-            if let Some(event) = executor.execute(request)? {
-                run.event(event);
-            }
-        }
-        if let Some(trial) = run.trial() {
-            progress.doing(format!("trial {}, {}", trial.number, trial.gait));
-        }
-        progress.at(run.finished() as u64);
-        if let Some(ending) = run.ending() {
-            break ending.clone();
+        let mut executor = Executor {
+            folder: &folder,
+            file: &mut file,
+            bench: &mut bench,
+            planner: &planner,
+            playable: &playable,
+            is_adaptive: campaign.is_some(),
+        };
+        let (ending, finished_now) = executor.run(&journal, gaits.clone())?;
+        finished += finished_now;
+        let Some(campaign) = campaign.as_ref().filter(|_| ending == RunEnding::Complete) else {
+            break ending;
+        };
+        journal = folder.journal()?;
+        measure(&folder, &mut file, &journal, tracked)?;
+        journal = choose(&mut folder, &mut file, campaign)?;
+        if journal.remaining(&folder.plan).is_empty() {
+            file.append(&Entry::Complete)?;
+            break ending;
         }
     };
-    drop(progress);
     let duration = bench.now_s() - began;
-    let finished = run.finished();
     let closed = bench.close();
+    let journal = folder.journal()?;
     match ending {
-        RunEnding::Complete => {
-            let journal = folder.journal()?;
-            closed.map(|()| done(&folder, &journal, finished, duration))
+        RunEnding::Complete => closed.and_then(|()| done(&folder, &journal, finished, duration)),
+        RunEnding::Interrupted(reason) => {
+            let left = match &campaign {
+                Some(_) => "the campaign is not at its goal".to_owned(),
+                None => format!("{} are left", journal.remaining(&folder.plan).len()),
+            };
+            Err(Failure::Tried(format!(
+                "{reason}; {finished} trials were finished, {left}: the same command goes on"
+            )))
         }
-        RunEnding::Interrupted(reason) => Err(Failure::Tried(format!(
-            "{reason}; {finished} trials were finished, {} are left: the same command goes on",
-            left.saturating_sub(finished)
-        ))),
     }
+}
+
+/// Chooses the next trial of an adaptive campaign, unless one is left or the campaign has ended. Returns the journal with it.
+fn choose(folder: &mut Folder, file: &mut JournalFile, campaign: &Campaign) -> Outcome<Journal> {
+    let mut journal = folder.journal()?;
+    if journal.remaining(&folder.plan).is_empty() {
+        let advice = campaign.advice(folder, &journal)?;
+        aside(&in_words(&advice));
+        if let Decision::Play(next) = advice.decision {
+            let last = folder.plan.trials.last().map_or(0, |trial| trial.number);
+            file.append(&Entry::Chosen {
+                trial: last + 1,
+                gait: next.gait,
+            })?;
+            journal = folder.journal()?;
+        }
+    }
+    folder.plan = folder.plan.with_chosen(&journal);
+    Ok(journal)
 }
 
 /// Executor of requests.
@@ -155,11 +175,44 @@ struct Executor<'a> {
     bench: &'a mut Bench,
     planner: &'a Planner,
     playable: &'a BTreeMap<String, Playable>,
+    /// Trials are chosen one by one: the end of those that are chosen is not the end of the campaign.
+    is_adaptive: bool,
 }
 
 impl Executor<'_> {
+    /// Runs the trials that are left. Returns the ending, and the trials that were finished.
+    fn run(
+        &mut self,
+        journal: &Journal,
+        gaits: BTreeMap<String, GaitOnRobot>,
+    ) -> Outcome<(RunEnding, usize)> {
+        let (plan, spec) = (&self.folder.plan, &self.folder.spec);
+        let left = journal.remaining(plan).len();
+        let planner = self.planner.clone();
+        let mut run = Run::new(plan, journal, planner, gaits, spec.start, spec.stop);
+        let progress = Progress::of_steps(left as u64);
+        loop {
+            for event in self.bench.advance()? {
+                run.event(event);
+            }
+            while let Some(request) = run.poll(self.bench.now_s()) {
+                if let Some(event) = self.execute(request)? {
+                    run.event(event);
+                }
+            }
+            if let Some(trial) = run.trial() {
+                progress.doing(format!("trial {}, {}", trial.number, trial.gait));
+            }
+            progress.at(run.finished() as u64);
+            if let Some(ending) = run.ending() {
+                return Ok((ending.clone(), run.finished()));
+            }
+        }
+    }
+
     fn execute(&mut self, request: Request) -> Outcome<Option<Event>> {
         match request {
+            Request::Write(Entry::Complete) if self.is_adaptive => {}
             Request::Write(entry) => self.file.append(&entry)?,
             Request::BeginTrack(name) => {
                 let path: PathBuf = self.folder.path.join(name);
@@ -200,15 +253,24 @@ fn opened(journal: &Journal) -> u64 {
     opened.count() as u64
 }
 
-fn done(folder: &Folder, journal: &Journal, finished_now: usize, duration_s: f64) -> RunOutput {
-    RunOutput {
+fn done(
+    folder: &Folder,
+    journal: &Journal,
+    finished_now: usize,
+    duration_s: f64,
+) -> Outcome<RunOutput> {
+    let campaign = Campaign::of(folder)?;
+    Ok(RunOutput {
         folder: folder.path.display().to_string(),
         runs: folder.plan.trials.len(),
         done: journal.finished().len(),
         given_up: journal.given_up().len(),
         finished_now,
         duration_s,
-    }
+        adaptive: campaign
+            .map(|campaign| campaign.advice(folder, journal))
+            .transpose()?,
+    })
 }
 
 fn gaits(
@@ -261,6 +323,10 @@ impl fmt::Display for RunOutput {
             "; {} of them now, in {:.2} h of tank time.",
             self.finished_now,
             self.duration_s / 3600.0
-        )
+        )?;
+        match &self.adaptive {
+            Some(advice) => write!(f, "\n{}", in_words(advice)),
+            None => Ok(()),
+        }
     }
 }

@@ -2,9 +2,11 @@
 
 use std::fmt;
 
+use experiment::adaptive::CampaignAdvice;
 use serde::Serialize;
 
 use super::ExperimentPaths;
+use super::adaptive::{Campaign, in_words};
 use super::folder::Folder;
 use crate::failure::Outcome;
 use crate::output::Output;
@@ -28,6 +30,9 @@ pub(crate) struct StatusOutput {
     next: Option<Next>,
     /// Reason for which the last run ended early; `null` if it did not.
     interruption: Option<String>,
+    /// Fit so far and next gait of an adaptive campaign.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    adaptive: Option<CampaignAdvice>,
 }
 
 #[derive(Debug, Serialize)]
@@ -64,6 +69,9 @@ pub(crate) fn status(paths: &ExperimentPaths) -> Outcome<StatusOutput> {
             gait: trial.gait.clone(),
         }),
         interruption: journal.interruption().map(str::to_owned),
+        adaptive: Campaign::of(&folder)?
+            .map(|campaign| campaign.advice(&folder, &journal))
+            .transpose()?,
     })
 }
 
@@ -77,11 +85,15 @@ impl fmt::Display for StatusOutput {
             write!(f, ", {} attempts failed", self.failed_attempts)?;
         }
         match &self.next {
+            None if self.adaptive.is_some() => f.write_str(".")?,
             Some(next) => write!(f, ".\nNext: trial {}, {}.", next.trial, next.gait)?,
             None => write!(
                 f,
                 ".\nNone is left; `swimmer experiment report` compares them."
             )?,
+        }
+        if let Some(advice) = &self.adaptive {
+            write!(f, "\n{}", in_words(advice))?;
         }
         if let Some(reason) = &self.interruption {
             write!(f, "\nThe last run ended early: {reason}.")?;

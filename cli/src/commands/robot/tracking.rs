@@ -70,6 +70,15 @@ impl Tracked {
     pub(crate) fn cameras(&self) -> CamerasOf<'_> {
         self.visible.of(&self.track)
     }
+
+    /// Reflectors or body that were named; `None` if none was.
+    pub(crate) fn reflectors(&self, links: &Links<f64>) -> Option<Reflectors> {
+        let Visible {
+            front, back, body, ..
+        } = &self.visible;
+        let is_named = front.is_some() || back.is_some() || body.is_some();
+        is_named.then(|| self.visible.reflectors(links))
+    }
 }
 
 impl Visible {
@@ -87,6 +96,20 @@ impl Visible {
             body,
             facing,
             axes,
+        }
+    }
+
+    /// Reflectors at the ends of the middle link, and the body, by their names.
+    fn reflectors(&self, links: &Links<f64>) -> Reflectors {
+        let reflector = |name: Option<&String>, usual: &str, along: f64| Reflector {
+            point: PointName::Named(name.map_or_else(|| usual.to_owned(), Clone::clone)),
+            at: [along, 0.0],
+        };
+        Reflectors {
+            front: reflector(self.front.as_ref(), FRONT, links.middle / 2.0),
+            back: reflector(self.back.as_ref(), BACK, -links.middle / 2.0),
+            sides: None,
+            body: self.body.clone().map(RigidBody::named),
         }
     }
 
@@ -139,16 +162,7 @@ impl CamerasOf<'_> {
     pub(super) fn open(&self, tank: TankCameras, links: &Links<f64>) -> Outcome<Tracking> {
         let middle_m = links.middle;
         let named = self.visible;
-        let reflector = |name: Option<&String>, usual: &str, along: f64| Reflector {
-            point: PointName::Named(name.map_or_else(|| usual.to_owned(), Clone::clone)),
-            at: [along, 0.0],
-        };
-        let reflectors = Reflectors {
-            front: reflector(named.front.as_ref(), FRONT, middle_m / 2.0),
-            back: reflector(named.back.as_ref(), BACK, -middle_m / 2.0),
-            sides: None,
-            body: named.body.clone().map(RigidBody::named),
-        };
+        let reflectors = named.reflectors(links);
         let may_take_a_body = named.front.is_none() && named.back.is_none() && named.body.is_none();
         let options = FilterOptions {
             period_s: QUICKEST_S,

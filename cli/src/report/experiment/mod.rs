@@ -19,6 +19,8 @@ struct Page<'a> {
     plan_sha256: String,
     swimmer: &'a str,
     of: &'a Comparison,
+    /// Fit of an adaptive campaign, in words.
+    fit: Option<String>,
     displacement: String,
     speed: String,
     ratio: String,
@@ -28,12 +30,18 @@ struct Page<'a> {
 ///
 /// # Errors
 /// As the drawing of a chart.
-pub(crate) fn page(plan: &Plan, swimmer: &str, of: &Comparison) -> Outcome<String> {
+pub(crate) fn page(
+    plan: &Plan,
+    swimmer: &str,
+    of: &Comparison,
+    fit: Option<String>,
+) -> Outcome<String> {
     written(&Page {
         plan,
         plan_sha256: plan.sha256(),
         swimmer,
         of,
+        fit,
         displacement: chart(of, "X [mm per cycle]", |_| 1e3)?,
         speed: chart(of, "speed [mm/s]", |gait| 1e3 / gait.period_s)?,
         ratio: ratios(of)?,
