@@ -62,3 +62,56 @@ fn the_firmware_is_driven_like_hardware() {
     let log = std::fs::read_to_string(folder.path().join("firmware.log")).unwrap();
     assert!(log.contains(" s INFO  swimmer firmware "), "{log}");
 }
+
+/// The real firmware on the emulated chip drives the twin's swimmer to poses: its pulses move the servos, the tank's cameras see the
+/// swimmer, and the controller chooses each cycle by what they see. In the emulator's time.
+fn driven_to(goal: &str) -> serde_json::Value {
+    let board = board();
+    let folder = tempfile::tempdir().unwrap();
+    let gaits = crate::go::gaits();
+    let line = format!(
+        "robot go --port emulator --track twin --tank 1.2x1.2 --within 3mm,1deg {goal} --json"
+    );
+    let mut words: Vec<&str> = line.split(' ').collect();
+    words.extend(["--gaits", &gaits]);
+    words.extend(board.iter().map(String::as_str));
+    let begun = std::time::Instant::now();
+    let document = swimmer_in(folder.path(), &words).with_status(0).json();
+    println!(
+        "emulated board, {goal}: {:.2} mm and {:.2}° off after {} cycles and {:.0} s of the robot's time, {:.0} s of the test's",
+        1e3 * number(&document, "off_m"),
+        number(&document, "off_rad").to_degrees(),
+        document["cycles"],
+        number(&document, "duration_s"),
+        begun.elapsed().as_secs_f64()
+    );
+    assert_eq!(document["reached"], true, "{document:#}");
+    assert!(
+        number(&document, "off_m") <= 3e-3 && number(&document, "off_rad") <= 1_f64.to_radians()
+    );
+    document
+}
+
+#[test]
+#[ignore = "soak: minutes"]
+fn the_firmware_is_driven_to_a_pose() {
+    let document = driven_to("--to 0.05,0.0,0deg");
+    let pose = &document["pose"];
+    let off = (number(pose, "x_m") - 0.05).hypot(number(pose, "y_m"));
+    assert!(
+        off <= 3e-3 && number(&document, "cycles") >= 2.0,
+        "{document:#}"
+    );
+}
+
+#[test]
+#[ignore = "soak: minutes"]
+fn the_firmware_is_driven_through_the_tank() {
+    for goal in [
+        "--to 0.2,-0.1,90deg",
+        "--via 0.1,0.05,0deg --to -0.05,0.05,0deg",
+        "--to -0.1,-0.1,-90deg",
+    ] {
+        driven_to(goal);
+    }
+}
