@@ -2,8 +2,6 @@
 
 use std::ffi::OsString;
 
-use clap::Command;
-
 use crate::failure::{Failure, Outcome};
 use crate::new_folder::with_places;
 use crate::output::{self, Output};
@@ -105,30 +103,4 @@ impl output::Captured {
             notes: self.asides,
         }
     }
-}
-
-/// The long options of a command (`["optimize", "displacement"]`), without those of every command. Returns `None` if there is no
-/// such command.
-///
-/// ```
-/// let options = swimmer_command::options(&["optimize", "displacement"]);
-/// assert!(options.contains(&"max-angle".to_owned()) && !options.contains(&"json".to_owned()));
-/// assert!(swimmer_command::options(&["optimise"]).is_empty());
-/// ```
-pub fn options(path: &[&str]) -> Vec<String> {
-    let mut whole = commands::command();
-    whole.build();
-    let found = path.iter().try_fold(&whole, |command: &Command, name| {
-        command.find_subcommand(name)
-    });
-    let every = ["help", "version"];
-    found.map_or_else(Vec::new, |command| {
-        command
-            .get_arguments()
-            .filter(|option| !option.is_global_set())
-            .filter_map(|option| option.get_long())
-            .filter(|name| !every.contains(name))
-            .map(str::to_owned)
-            .collect()
-    })
 }

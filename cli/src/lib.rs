@@ -39,7 +39,7 @@ use std::ffi::OsString;
 use clap::FromArgMatches as _;
 use clap::error::ErrorKind;
 
-pub use crate::captured::{CapturedFailure, CapturedOutput, Noted, options, run_captured};
+pub use crate::captured::{CapturedFailure, CapturedOutput, Noted, run_captured};
 use crate::commands::Arguments;
 pub use crate::commands::robot::{
     IsInterrupted, Reply, RobotHandle, RobotOptions, Stopper, TelemetryReport,

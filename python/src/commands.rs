@@ -42,10 +42,3 @@ pub(crate) fn exception(failure: CapturedFailure) -> PyErr {
 pub(crate) fn run(py: Python<'_>, words: Vec<OsString>) -> u8 {
     py.detach(|| swimmer_command::run(words))
 }
-
-/// The long options that a command takes, as `["optimize", "displacement"]`.
-#[pyfunction]
-pub(crate) fn options(path: Vec<String>) -> Vec<String> {
-    let path: Vec<&str> = path.iter().map(String::as_str).collect();
-    swimmer_command::options(&path)
-}

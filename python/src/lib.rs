@@ -30,7 +30,7 @@ mod _swimmer {
     #[pymodule_export]
     use super::calibrate::{fit, survey};
     #[pymodule_export]
-    use super::commands::{options, run, run_captured};
+    use super::commands::{run, run_captured};
     #[pymodule_export]
     use super::errors::{BadInput, Error, Failed};
     #[pymodule_export]

@@ -41,9 +41,9 @@ def warn(notes: Sequence[str], *, stacklevel: int) -> None:
 
 
 class Run:
-    """One command, with a folder for what is not yet in a file; the folder goes with it.
+    """One command, with a temporary folder for objects that are in memory.
 
-    Messages and answers name files there as if they lay where you are.
+    Messages and results name files of that folder without the folder.
     """
 
     def __init__(self, *command: str) -> None:
@@ -73,7 +73,7 @@ class Run:
         return Path(self._folder.name) / name
 
     def found(self, shown: str) -> Path:
-        """A file of the folder, as the answer names it."""
+        """Path of a file that the result names."""
         return Path(self._folder.name) / shown
 
     def swimmer(self, swimmer: Swimmer | Text) -> None:
@@ -120,7 +120,7 @@ class Run:
         self._words += words
 
     def document(self, stacklevel: int = 3) -> Document:
-        """What the command answers; what it says beside it becomes warnings where its caller's caller stands."""
+        """Runs the command and returns its JSON document; its notes become warnings at the caller's caller."""
         try:
             text, notes = _swimmer.run_captured(self._words)
         except Error as error:

@@ -23,7 +23,6 @@ __all__ = [
     "experiment_status",
     "height_map",
     "optimize",
-    "options",
     "passive_waveform",
     "run",
     "run_captured",
@@ -763,6 +762,3 @@ def run_captured(words: Sequence[str | os.PathLike[str]]) -> tuple[str, list[str
 
 def run(words: Sequence[str]) -> int:
     """The whole `swimmer` command, the program's name first; gives its exit status."""
-
-def options(path: Sequence[str]) -> list[str]:
-    """The long options that a command takes."""
