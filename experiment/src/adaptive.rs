@@ -42,6 +42,22 @@ pub struct CampaignGoal {
     pub accuracy_m: f64,
 }
 
+/// Drag parameters of a swimmer file, from which the fit starts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StartParameters {
+    /// χ.
+    pub chi: f64,
+    /// r_s \[m\].
+    pub sphere_radius_m: f64,
+}
+
+impl StartParameters {
+    /// ln χ and r_s \[m\], in which the fit computes.
+    fn coordinates(self) -> [f64; 2] {
+        [self.chi.ln(), self.sphere_radius_m]
+    }
+}
+
 /// Gait that the campaign may play.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Candidate {
@@ -96,11 +112,11 @@ pub struct NextTrial {
     pub seconds_left: f64,
 }
 
-/// Decides the next trial from those so far. `start` is χ and r_s \[m\] of the swimmer file. Returns `None` without candidates.
+/// Decides the next trial from those so far. Returns `None` without candidates.
 pub fn advise(
     candidates: &[Candidate],
     trials: &[MeasuredTrial],
-    start: [f64; 2],
+    start: StartParameters,
     goal: &CampaignGoal,
 ) -> Option<CampaignAdvice> {
     let tank_time_s = trials
@@ -136,10 +152,10 @@ fn next_trial(
     candidates: &[Candidate],
     trials: &[MeasuredTrial],
     fitted: Option<&DragEstimate>,
-    start: [f64; 2],
+    start: StartParameters,
     goal: &CampaignGoal,
 ) -> Option<NextTrial> {
-    let at = fitted.map_or([start[0].ln(), start[1]], |fit| {
+    let at = fitted.map_or(start.coordinates(), |fit| {
         [fit.chi.ln(), fit.sphere_radius_m]
     });
     let middle = candidates.first()?.response.middle_m();

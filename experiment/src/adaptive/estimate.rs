@@ -5,7 +5,7 @@ use nalgebra::{Matrix2, Vector2};
 use serde::Serialize;
 
 use super::response::{QUANTITIES, Response};
-use super::{CampaignGoal, Candidate};
+use super::{CampaignGoal, Candidate, StartParameters};
 
 /// Iterations of Gauss–Newton, and the step of ln χ at which they end.
 const ITERATIONS: usize = 50;
@@ -104,7 +104,7 @@ pub(super) fn expected_noise(accuracy_m: f64, middle_m: f64) -> [f64; QUANTITIES
 pub fn estimate(
     candidates: &[Candidate],
     trials: &[MeasuredTrial],
-    start: [f64; 2],
+    start: StartParameters,
     goal: &CampaignGoal,
 ) -> Option<DragEstimate> {
     let played: Vec<(&Response, &MeasuredTrial)> = trials
@@ -117,7 +117,7 @@ pub fn estimate(
     }
     let first = played.first()?.0;
     let mut noise = expected_noise(goal.accuracy_m, first.middle_m());
-    let mut at = first.clamped([start[0].ln(), start[1]]);
+    let mut at = first.clamped(start.coordinates());
     let mut fit = step(&played, at, &noise)?;
     for _ in 0..ITERATIONS {
         let next = first.clamped([at[0] + fit.change.x, at[1] + fit.change.y]);

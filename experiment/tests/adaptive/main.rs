@@ -8,7 +8,8 @@ mod hidden_robot;
 use std::sync::OnceLock;
 
 use experiment::adaptive::{
-    CampaignGoal, Candidate, Decision, DragEstimate, MeasuredTrial, Response, advise, estimate,
+    CampaignGoal, Candidate, Decision, DragEstimate, MeasuredTrial, Response, StartParameters,
+    advise, estimate,
 };
 use forecast::{Played, Servos, forecast};
 use hidden_robot::{CYCLES, HiddenRobot, PERIOD_S, SETTLE_S};
@@ -29,9 +30,12 @@ fn file() -> SwimmerFile {
     SwimmerFile::preset("robot").unwrap()
 }
 
-fn start() -> [f64; 2] {
+fn start() -> StartParameters {
     let swimmer = file().swimmer;
-    [swimmer.chi, swimmer.sphere_radius]
+    StartParameters {
+        chi: swimmer.chi,
+        sphere_radius_m: swimmer.sphere_radius,
+    }
 }
 
 /// Gaits of the campaign: circles and squares of 30° to 110° that the robot plays; the circles come first.

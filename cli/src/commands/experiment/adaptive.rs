@@ -3,7 +3,9 @@
 use std::fmt::Write as _;
 
 use calibrate::{CalibrateError, RunData, Statistics, Timing, calibrate_run, load_tracks};
-use experiment::adaptive::{CampaignAdvice, CampaignGoal, Candidate, Decision, Response, advise};
+use experiment::adaptive::{
+    CampaignAdvice, CampaignGoal, Candidate, Decision, Response, StartParameters, advise,
+};
 use experiment::unattended::{Entry, Journal, TrialQuantities};
 use swimmer_files::Reflectors;
 
@@ -15,7 +17,7 @@ use crate::quantity;
 /// Adaptive campaign of a folder.
 pub(super) struct Campaign {
     candidates: Vec<Candidate>,
-    start: [f64; 2],
+    start: StartParameters,
     goal: CampaignGoal,
 }
 
@@ -41,7 +43,10 @@ impl Campaign {
         let swimmer = &folder.swimmer.swimmer;
         Ok(Some(Self {
             candidates: candidates.collect::<Outcome<_>>()?,
-            start: [swimmer.chi, swimmer.sphere_radius],
+            start: StartParameters {
+                chi: swimmer.chi,
+                sphere_radius_m: swimmer.sphere_radius,
+            },
             goal: adaptive.goal(plan.level),
         }))
     }
