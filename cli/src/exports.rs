@@ -14,6 +14,7 @@ use crate::failure::{Failure, Outcome};
 use crate::new_file::may_be_written;
 use crate::new_folder::{NewFolder, with_places};
 use crate::output;
+use crate::picture_file::{FigureOptions, FigureWidth};
 
 /// Runs a part of a command whose Ctrl-C and messages stay the caller's.
 fn quietly<T>(work: impl FnOnce() -> Outcome<T>) -> Result<T, Error> {
@@ -73,7 +74,7 @@ impl ResultsFolder {
 pub struct NewFront(FrontFile);
 
 impl NewFront {
-    /// A file that ends in `.svg` or `.csv`.
+    /// A file that ends in `.svg`, `.png` or `.pdf` for the figure, or in `.csv` for the table.
     ///
     /// # Errors
     /// Another ending, or a file that exists.
@@ -90,7 +91,7 @@ impl NewFront {
     /// # Errors
     /// The disk refuses.
     pub fn write(&self, output: &mut speed::Output) -> Result<(), Error> {
-        quietly(|| self.0.write(output))
+        quietly(|| self.0.write(output, FigureWidth::default()))
     }
 }
 
@@ -104,7 +105,7 @@ impl NewPicture {
     /// # Errors
     /// Another ending, or a file that exists.
     pub fn new(path: PathBuf) -> Result<Self, Error> {
-        quietly(|| Picture::new(path)).map(Self)
+        quietly(|| Picture::new(path, FigureOptions::default())).map(Self)
     }
 
     /// Draws a simulated gait, which people call `gait`, and names the file in the output.

@@ -2,13 +2,64 @@
 
 use std::path::Path;
 
+use clap::ValueEnum;
 use swimmer_files::write_atomically;
 
 use crate::failure::{Failure, Outcome};
 use crate::raster::{pdf, png};
 
-/// Width of a figure in print: both columns of a journal.
-const WIDTH_MM: f64 = 170.0;
+/// Width of a figure in print.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub(crate) enum FigureWidth {
+    // Not doc comments: clap would print them, and spread each option of the command over several lines.
+    // One column of a journal.
+    #[value(name = "85")]
+    Column,
+    // Both columns.
+    #[default]
+    #[value(name = "170")]
+    Page,
+}
+
+/// Width of a narrow figure in pixels of the page. Its letters of 15 pixels are 7.2 points high in print.
+pub(crate) const COLUMN: i32 = 500;
+
+impl FigureWidth {
+    /// Width in millimetres.
+    fn mm(self) -> f64 {
+        match self {
+            Self::Column => 85.0,
+            Self::Page => 170.0,
+        }
+    }
+}
+
+/// Options of a command that writes figures.
+#[derive(Debug, Clone, Copy, Default, clap::Args)]
+pub(crate) struct FigureOptions {
+    /// Width of a figure in print, mm: one column of a journal or both; 170 if left out
+    #[arg(long, value_name = "MM", value_enum)]
+    width: Option<FigureWidth>,
+}
+
+impl FigureOptions {
+    /// Width of figures of some kinds; without one, `None` stands for no file.
+    ///
+    /// # Errors
+    /// [`Failure::BadInput`] if a width was given for a file without one.
+    pub(crate) fn width(self, kind: Option<Kind>) -> Outcome<FigureWidth> {
+        match (self.width, kind) {
+            (Some(_), None) => Err(Failure::BadInput(
+                "--width is the width of a figure, and none is written: name its file".to_owned(),
+            )),
+            (Some(_), Some(kind @ (Kind::Gif | Kind::Csv))) => Err(Failure::BadInput(format!(
+                "--width is for figures (.svg, .png, .pdf); {} has none",
+                kind.description().1
+            ))),
+            (width, _) => Ok(width.unwrap_or_default()),
+        }
+    }
+}
 
 /// A kind of file that shows something.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,19 +113,20 @@ impl Kind {
     ///
     /// # Errors
     /// The drawing cannot be converted, or the file cannot be written.
-    pub(crate) fn write(self, path: &Path, text: &str) -> Outcome {
+    pub(crate) fn write(self, path: &Path, text: &str, width: FigureWidth) -> Outcome {
         match self {
-            Self::Png => write_atomically(path, &png(text, WIDTH_MM)?)?,
-            Self::Pdf => write_atomically(path, &pdf(&for_print(text))?)?,
-            Self::Svg => write_atomically(path, for_print(text).as_bytes())?,
+            Self::Png => write_atomically(path, &png(text, width.mm())?)?,
+            Self::Pdf => write_atomically(path, &pdf(&for_print(text, width))?)?,
+            Self::Svg => write_atomically(path, for_print(text, width).as_bytes())?,
             Self::Gif | Self::Csv => write_atomically(path, text.as_bytes())?,
         }
         Ok(())
     }
 }
 
-/// A drawing (SVG) of [`WIDTH_MM`] in place of its width on the page, unchanged in its proportions.
-fn for_print(drawing: &str) -> String {
+/// A drawing (SVG) of a width in print in place of its width on the page, unchanged in its proportions.
+fn for_print(drawing: &str, width: FigureWidth) -> String {
+    let wide = width.mm();
     let Some((head, rest)) = drawing.split_once('>') else {
         return drawing.to_owned();
     };
@@ -87,9 +139,9 @@ fn for_print(drawing: &str) -> String {
         return drawing.to_owned();
     };
     // Thousandths of a millimetre.
-    let tall = (WIDTH_MM * 1e3 * down / across).round() / 1e3;
+    let tall = (wide * 1e3 * down / across).round() / 1e3;
     let head = head
-        .replacen(&width, &format!(" width=\"{WIDTH_MM}mm\""), 1)
+        .replacen(&width, &format!(" width=\"{wide}mm\""), 1)
         .replacen(&height, &format!(" height=\"{tall}mm\""), 1);
     format!("{head}>{rest}")
 }
@@ -107,18 +159,46 @@ fn listed(words: &[String]) -> String {
 mod tests {
     use super::*;
 
+    /// Letters of 15 pixels, the smallest of charts and pictures in a column.
+    #[test]
+    fn letters_of_a_column_are_at_least_seven_points_high() {
+        let points_per_mm = 72.0 / 25.4;
+        let page = 15.0 * FigureWidth::Column.mm() / f64::from(COLUMN) * points_per_mm;
+        assert!(page >= 7.0, "{page}");
+    }
+
+    #[test]
+    fn only_figures_have_a_width() {
+        let given = FigureOptions {
+            width: Some(FigureWidth::Column),
+        };
+        for kind in [Kind::Svg, Kind::Png, Kind::Pdf] {
+            assert_eq!(given.width(Some(kind)).unwrap(), FigureWidth::Column);
+        }
+        for kind in [None, Some(Kind::Gif), Some(Kind::Csv)] {
+            assert!(matches!(given.width(kind), Err(Failure::BadInput(_))));
+            let left_out = FigureOptions { width: None };
+            assert_eq!(left_out.width(kind).unwrap(), FigureWidth::Page);
+        }
+    }
+
     #[test]
     fn a_figure_is_as_wide_as_two_columns() {
         let drawing = "<svg width=\"720\" height=\"540\" viewBox=\"0 0 5760 4320\" xmlns=\"http://www.w3.org/2000/svg\">\n<rect width=\"9\" height=\"9\"/></svg>\n";
         assert_eq!(
-            for_print(drawing),
+            for_print(drawing, FigureWidth::Page),
             "<svg width=\"170mm\" height=\"127.5mm\" viewBox=\"0 0 5760 4320\" xmlns=\"http://www.w3.org/2000/svg\">\n<rect width=\"9\" height=\"9\"/></svg>\n"
         );
+        let narrow = for_print(drawing, FigureWidth::Column);
+        assert!(
+            narrow.starts_with("<svg width=\"85mm\" height=\"63.75mm\""),
+            "{narrow}"
+        );
         for other in ["", "<svg viewBox=\"0 0 1 1\"></svg>"] {
-            assert_eq!(for_print(other), other);
+            assert_eq!(for_print(other, FigureWidth::Page), other);
         }
         // 170 mm in points.
-        let pdf = pdf(&for_print(drawing)).unwrap();
+        let pdf = pdf(&for_print(drawing, FigureWidth::Page)).unwrap();
         let text = String::from_utf8_lossy(&pdf);
         assert!(text.contains("/MediaBox[0 0 481.8"), "{text}");
     }

@@ -265,7 +265,7 @@ def speed(
     robust, gain, over
         Uncertainty to design for, as in `displacement`.
     front : path, optional
-        New file (.svg or .csv): displacement per cycle against speed, of the farthest gaits in shorter and longer periods.
+        New file (.svg, .png, .pdf or .csv): displacement per cycle against speed, of the farthest gaits in shorter and longer periods.
 
     Returns
     -------

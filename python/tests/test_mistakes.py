@@ -37,7 +37,7 @@ MISTAKES: dict[str, tuple[Callable[[], object], str]] = {
     "three rates": (lambda: sw.optimize.speed("robot", max_rate=(1.0, 2.0, 3.0)), "max_rate=.*one for each of the two servos"),
     "heading": (lambda: sw.optimize.speed("robot", max_rate=3.0, heading="up"), "heading='up': choose"),  # type: ignore[arg-type]
     "front with period": (lambda: sw.optimize.speed("robot", max_rate=3.0, front="front.svg", period=9.0), "leave out period"),
-    "front of another kind": (lambda: sw.optimize.speed("robot", max_rate=3.0, front="front.png"), "ends in .svg or .csv"),
+    "front of another kind": (lambda: sw.optimize.speed("robot", max_rate=3.0, front="front.gif"), "cannot tell from `front.gif` what to write"),
     "rate to steer by": (lambda: sw.optimize.steer("robot"), "give max_rate or playable=True"),
     "shape": (lambda: sw.optimize.steer("robot", playable=True, shape="80deg"), "shape='80deg': give two angles"),
     "folder that is full": (lambda: sw.optimize.steer("robot", playable=True, output="."), "not empty; name another one with output,"),

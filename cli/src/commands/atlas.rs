@@ -18,6 +18,7 @@ use crate::context::perform;
 use crate::failure::{Failure, Outcome};
 use crate::new_folder::NewFolder;
 use crate::output::Output;
+use crate::picture_file::{FigureOptions, FigureWidth, Kind};
 
 use folder::{Entry, fill};
 
@@ -64,6 +65,8 @@ pub(crate) struct Atlas {
     /// Put every gait as a gait file and a picture of them all into this folder
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    figure: FigureOptions,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -83,10 +86,11 @@ impl Atlas {
                     .to_owned(),
             ));
         }
+        let width = self.figure.width(self.output.as_ref().map(|_| Kind::Svg))?;
         let folder = self.output.as_deref().map(NewFolder::start).transpose()?;
         let mut found = perform(|context| atlas::run(&request, context))?;
         if let Some(folder) = folder {
-            write(folder, &mut found)?;
+            write(folder, &mut found, width)?;
         }
         let text = match &found {
             atlas::Output::Atlas(found) => text::atlas(found),
@@ -126,19 +130,19 @@ impl Atlas {
 }
 
 /// Writes gaits and picture, and names them in the output.
-fn write(folder: NewFolder, found: &mut atlas::Output) -> Outcome {
+fn write(folder: NewFolder, found: &mut atlas::Output, width: FigureWidth) -> Outcome {
     match found {
         atlas::Output::Atlas(found) => {
             let (name, title, objective) =
                 (found.name.clone(), text::title(found), found.objective);
             let optima = found.optima.iter_mut();
             let entries = optima.map(|optimum| entry(objective, optimum)).collect();
-            found.picture = Some(fill(folder, &name, title, entries)?);
+            found.picture = Some(fill(folder, &name, title, entries, width)?);
         }
         atlas::Output::Speed(found) => {
             let (name, title) = (found.name.clone(), text::speed_title(found));
             let entries = found.optima.iter_mut().map(fastest).collect();
-            found.picture = Some(fill(folder, &name, title, entries)?);
+            found.picture = Some(fill(folder, &name, title, entries, width)?);
         }
         atlas::Output::Followed(_) => {}
     }

@@ -16,7 +16,7 @@ use crate::csv_text::csv_text;
 use crate::failure::Outcome;
 use crate::new_file::may_be_written;
 use crate::output::{Output, asides, verbose};
-use crate::picture_file::Kind;
+use crate::picture_file::{FigureOptions, Kind};
 use crate::quantity::{self, Rows};
 
 /// Map the height function, with its zero-level curves and gaits
@@ -40,6 +40,8 @@ pub(crate) struct HeightMap {
     /// Write the map: .svg, .png or .pdf as a figure, .csv as a table of φ₁, φ₂, H at 201 × 201 nodes
     #[arg(short, long, value_name = "FILE.svg|.png|.pdf|.csv")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    figure: FigureOptions,
 }
 
 /// A component of the displacement.
@@ -93,6 +95,7 @@ impl HeightMap {
         let kinds = [Kind::Svg, Kind::Png, Kind::Pdf, Kind::Csv];
         let kind = self.output.as_deref().map(|path| Kind::of(path, &kinds));
         let kind = kind.transpose()?;
+        let width = self.figure.width(kind)?;
         let mut context = Context::on_disk();
         let read = self.read(&mut context);
         asides(&context);
@@ -114,9 +117,10 @@ impl HeightMap {
                     row,
                     curves: &described.zero_curves,
                     gaits: &gaits,
+                    width,
                 })?,
             };
-            kind.write(path, &text)?;
+            kind.write(path, &text, width)?;
         }
         described.written = self.output;
         output.rendered(

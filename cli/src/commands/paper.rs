@@ -11,7 +11,7 @@ use crate::failure::{Failure, Outcome};
 use crate::new_folder::NewFolder;
 use crate::output::Output;
 use crate::paper::{deviation, figures, number, open, page, printed};
-use crate::picture_file::Kind;
+use crate::picture_file::{FigureOptions, Kind};
 use crate::progress::Progress;
 use crate::quantity::Table;
 
@@ -24,6 +24,8 @@ pub(crate) struct Paper {
     /// Write the figures (SVG and PNG), their points (CSV) and one page with everything into this folder
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    figure: FigureOptions,
 }
 
 #[derive(Debug, Serialize)]
@@ -43,6 +45,7 @@ const PAGE: &str = "index.html";
 impl Paper {
     /// Computes everything and answers.
     pub(crate) fn run(self, output: Output) -> Outcome {
+        let width = self.figure.width(self.output.as_ref().map(|_| Kind::Svg))?;
         let folder = self.output.as_deref().map(NewFolder::start).transpose()?;
         let progress = Progress::with_share("computing the paper's gaits");
         let study =
@@ -54,9 +57,9 @@ impl Paper {
             let drawn = figures(&study)?;
             for figure in &drawn {
                 let place = |ending: &str| folder.draft().join(format!("{}.{ending}", figure.name));
-                let drawing = figure.svg()?;
+                let drawing = figure.svg(width)?;
                 for kind in [Kind::Svg, Kind::Png] {
-                    kind.write(&place(kind.ending()), &drawing)?;
+                    kind.write(&place(kind.ending()), &drawing, width)?;
                 }
                 write_atomically(&place("csv"), figure.csv()?.as_bytes())?;
             }

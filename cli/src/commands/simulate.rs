@@ -16,7 +16,7 @@ use crate::in_fluid::fluid_rows;
 use crate::new_file::may_be_written;
 use crate::output::{Output, asides};
 use crate::passive::{PassiveOptions, passive_row};
-use crate::picture_file::Kind;
+use crate::picture_file::{FigureOptions, FigureWidth, Kind};
 use crate::quantity::{self, Rows};
 use crate::report::style::number;
 use crate::report::swimming::{ANIMATION_SIZE, FRAMES_PER_SECOND, Swimming, animation, snapshots};
@@ -42,6 +42,8 @@ pub(crate) struct Simulate {
     /// Draw the swimmer: .svg, .png or .pdf for snapshots along its path over all cycles, .gif for the first cycle in motion
     #[arg(long, value_name = "FILE")]
     picture: Option<PathBuf>,
+    #[command(flatten)]
+    figure: FigureOptions,
     #[command(flatten)]
     playing: played::Playing,
     #[command(flatten)]
@@ -126,7 +128,12 @@ impl Simulate {
     pub(crate) fn run(self, output: Output) -> Outcome {
         self.trajectory.as_deref().map_or(Ok(()), may_be_written)?;
         self.output.as_deref().map_or(Ok(()), may_be_written)?;
-        let picture = self.picture.clone().map(Picture::new).transpose()?;
+        let picture = if let Some(path) = &self.picture {
+            Some(Picture::new(path.clone(), self.figure)?)
+        } else {
+            self.figure.width(None)?;
+            None
+        };
         let mut context = Context::on_disk();
         let subject = Subject::load_driven(
             &SwimmerSource::from(self.swimmer.as_str()),
@@ -176,14 +183,16 @@ impl Simulate {
 pub(crate) struct Picture {
     path: PathBuf,
     kind: Kind,
+    width: FigureWidth,
 }
 
 impl Picture {
     /// The format is that of the file name, checked before anything is computed.
-    pub(crate) fn new(path: PathBuf) -> Outcome<Self> {
+    pub(crate) fn new(path: PathBuf, options: FigureOptions) -> Outcome<Self> {
         let kind = Kind::of(&path, &[Kind::Svg, Kind::Png, Kind::Pdf, Kind::Gif])?;
+        let width = options.width(Some(kind))?;
         may_be_written(&path)?;
-        Ok(Self { path, kind })
+        Ok(Self { path, kind, width })
     }
 
     /// Draws a simulated gait of this name, and names the file in the output.
@@ -194,14 +203,14 @@ impl Picture {
         cycles: u32,
         simulated: &mut simulate::Output,
     ) -> Outcome {
-        let Self { path, kind } = self;
+        let Self { path, kind, width } = self;
         let cycles = if *kind == Kind::Gif { 1 } else { cycles };
         let over_length = number(simulated.net.displacement_over_length, 4);
         let caption = format!("{}, {gait}: X/L = {over_length} a cycle", subject.file.name);
         let swimming = Swimming::in_the_model(caption, &subject.model, &subject.gait, cycles);
         match kind {
             Kind::Gif => write_atomically(path, &animation(&swimming)?)?,
-            kind => kind.write(path, &snapshots(&swimming))?,
+            kind => kind.write(path, &snapshots(&swimming, *width), *width)?,
         }
         simulated.picture = Some(path.clone());
         Ok(())

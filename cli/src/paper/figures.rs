@@ -13,6 +13,7 @@ use swimmer_model::{Gait as _, Stroke};
 use crate::commands::height_map::picture;
 use crate::csv_text::csv_text;
 use crate::failure::Outcome;
+use crate::picture_file::FigureWidth;
 use crate::report::chart::{
     BOUND, Chart, INK, MEASURED, PREDICTED, Point, SINGULAR, SLENDER, Series,
 };
@@ -30,8 +31,8 @@ pub(crate) struct Figure {
     chart: Chart,
     /// Names of the chart's series, for the table.
     names: Vec<&'static str>,
-    /// Shown instead of the chart, whose points it holds and more.
-    picture: Option<String>,
+    /// Shown instead of the chart, whose points they hold and more: for a page and for a column.
+    pictures: Option<[String; 2]>,
 }
 
 const WIDE: (i32, i32) = (520, 380);
@@ -62,7 +63,7 @@ impl Figure {
                 series: Vec::new(),
             },
             names: Vec::new(),
-            picture: None,
+            pictures: None,
         }
     }
 
@@ -126,8 +127,15 @@ impl Figure {
     ///
     /// # Errors
     /// Errors of the drawing.
-    pub(crate) fn svg(&self) -> Outcome<String> {
-        self.picture.clone().map_or_else(|| self.chart.svg(), Ok)
+    pub(crate) fn svg(&self, width: FigureWidth) -> Outcome<String> {
+        let Some([page, column]) = &self.pictures else {
+            return self.chart.clone().wide(width).svg();
+        };
+        Ok(match width {
+            FigureWidth::Page => page,
+            FigureWidth::Column => column,
+        }
+        .clone())
     }
 
     /// Its points as a table, one line each, in the units of the axes.
@@ -310,14 +318,19 @@ fn height_map(map: &HeightMap, simple: &Simple) -> Outcome<Figure> {
             });
         }
     }
-    figure.picture = Some(picture::svg(&picture::Figure {
-        title: String::new(),
-        quantity: "H_x/L [rad⁻²]",
-        map,
-        row: HeightRow::X,
-        curves: &map.zero_curves(HeightRow::X),
-        gaits: &gaits,
-    })?);
+    let curves = map.zero_curves(HeightRow::X);
+    let picture = |width| {
+        picture::svg(&picture::Figure {
+            title: String::new(),
+            quantity: "H_x/L [rad⁻²]",
+            map,
+            row: HeightRow::X,
+            curves: &curves,
+            gaits: &gaits,
+            width,
+        })
+    };
+    figure.pictures = Some([picture(FigureWidth::Page)?, picture(FigureWidth::Column)?]);
     Ok(figure)
 }
 

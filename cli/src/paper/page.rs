@@ -5,6 +5,7 @@ use validation::{Claim, Printed, Row, Tally};
 
 use super::Figure;
 use crate::failure::Outcome;
+use crate::picture_file::FigureWidth;
 use crate::report::written;
 
 #[derive(Template)]
@@ -22,7 +23,9 @@ struct Page<'a> {
 /// # Errors
 /// Errors of the drawing.
 pub(crate) fn page(rows: &[Row], figures: &[Figure]) -> Outcome<String> {
-    let drawn = figures.iter().map(|figure| Ok((figure, figure.svg()?)));
+    let drawn = figures
+        .iter()
+        .map(|figure| Ok((figure, figure.svg(FigureWidth::Page)?)));
     written(&Page {
         rows,
         numbers: Tally::of(rows, Claim::Number),

@@ -7,11 +7,12 @@ use plotters::prelude::*;
 use super::colour_bar::{self, ColourBar};
 use super::placing::Obstacles;
 use super::style::{
-    AXIS, Area, LEGEND_LINE, NAMES, NUMBERS, SCALE, TITLE, WORDS, arrows, finished, head, legend,
-    letters, pixels, said, stroke,
+    AXIS, Area, LEGEND_INDENT, LEGEND_LINE, NAMES, NUMBERS, SCALE, TITLE, WORDS, arrows, broken,
+    finished, head, legend, letters, pixels, said, stroke,
 };
 pub(crate) use super::style::{INK, Point};
 use crate::failure::{Failure, Outcome};
+use crate::picture_file::{COLUMN, FigureWidth};
 
 /// Colour of measurements.
 pub(crate) const MEASURED: RGBColor = RGBColor(0x1f, 0x6f, 0xb2);
@@ -29,6 +30,9 @@ const FAINT: RGBColor = RGBColor(0xe3, 0xe7, 0xeb);
 
 /// Discs that words keep off; of more, a word would find no place.
 const MOST_OBSTACLES: usize = 60;
+/// Left end of the legend, and height of a line of the title, pixels of the page.
+const LEGEND_LEFT: i32 = 64;
+const TITLE_LINE: i32 = 25;
 /// Names below the horizontal axis.
 const MOST_NAMES: usize = 20;
 
@@ -93,19 +97,33 @@ pub(crate) struct Chart {
     pub(crate) legend: Vec<(String, RGBColor)>,
 }
 
+/// Pixels of the page for a number on the horizontal axis.
+const NUMBER_WIDTH: i32 = 62;
+
 impl Chart {
+    /// The same chart in a figure of a width in print: a column has its own proportions, since letters stay as they are.
+    #[must_use]
+    pub(crate) fn wide(mut self, width: FigureWidth) -> Self {
+        if width == FigureWidth::Column && self.size.0 > COLUMN {
+            // A little taller: axes' names and numbers take the same height.
+            self.size = (COLUMN, self.size.1 * COLUMN * 11 / (self.size.0 * 10));
+        }
+        self
+    }
+
     /// Draws the chart.
     ///
     /// # Errors
     /// [`Failure::Tried`] when the drawing library gives up.
     pub(crate) fn svg(&self) -> Outcome<String> {
         let mut text = String::new();
-        let lines = i32::try_from(self.legend.len()).unwrap_or(i32::MAX / 1000);
+        let legend = self.legend_lines();
+        let lines = i32::try_from(legend.len()).unwrap_or(i32::MAX / 1000);
         let size = (self.size.0, self.size.1 + LEGEND_LINE * lines);
         {
             let drawn = [size.0, size.1].map(|side| (side * SCALE).unsigned_abs());
             let area = SVGBackend::with_string(&mut text, drawn.into()).into_drawing_area();
-            self.draw(&area).map_err(|reason| {
+            self.draw(&area, &legend).map_err(|reason| {
                 Failure::Tried(format!(
                     "cannot draw the chart of {} over {}: {reason}",
                     self.y_label, self.x_label
@@ -124,6 +142,21 @@ impl Chart {
         }
     }
 
+    /// Names of curves, on several lines if they are wider than the figure; only the first line has a colour.
+    fn legend_lines(&self) -> Vec<(String, Option<RGBColor>)> {
+        let of_one = |(name, color): &(String, RGBColor)| {
+            let lines = broken(name, WORDS, self.size.0 - LEGEND_LEFT - LEGEND_INDENT);
+            let colors = std::iter::once(Some(*color)).chain(std::iter::repeat(None));
+            lines.into_iter().zip(colors).collect::<Vec<_>>()
+        };
+        self.legend.iter().flat_map(of_one).collect()
+    }
+
+    /// Lines of the title.
+    fn title_lines(&self) -> Vec<String> {
+        broken(&self.title, TITLE, self.size.0 - LEGEND_LEFT)
+    }
+
     /// Width of the numbers at the y axis and of its name \[px\].
     fn label_width(y_range: &Range<f64>) -> i32 {
         let format = label_format(y_range, 6);
@@ -133,13 +166,16 @@ impl Chart {
     }
 
     #[allow(clippy::too_many_lines)] // one chart, part after part
-    fn draw(&self, whole: &Area<'_>) -> Result<(), String> {
+    fn draw(
+        &self,
+        whole: &Area<'_>,
+        legend_lines: &[(String, Option<RGBColor>)],
+    ) -> Result<(), String> {
         whole.fill(&WHITE).map_err(|error| said(&error))?;
-        let named = self
-            .legend
+        let named = legend_lines
             .iter()
             .map(|(name, color)| (name.as_str(), *color));
-        legend(whole, (64, self.size.1), named)?;
+        legend(whole, (LEGEND_LEFT, self.size.1), named)?;
         let (area, _) = whole.split_vertically(self.size.1 * SCALE);
         let bar = self.colour_bar();
         let width = self.size.0 - bar.map_or(0, |_| colour_bar::WIDTH);
@@ -155,13 +191,27 @@ impl Chart {
         let label_width = Self::label_width(&self.ranges(inside(64 * SCALE)).1) * SCALE;
         if let Some(bar) = bar {
             let (beside, _) = beside.split_vertically(self.size.1 * SCALE - label_height);
-            bar.draw(&beside, self.top())?;
+            let numbers = if self.size.0 > COLUMN { 9 } else { 6 };
+            bar.draw(&beside, self.top(), numbers)?;
         }
-        whole
-            .draw_text(&self.title, &letters(TITLE, INK), (label_width, 10 * SCALE))
-            .map_err(|error| said(&error))?;
+        let mut title_top = 10;
+        // A long title begins where the figure does.
+        let title_lines = self.title_lines();
+        let title_left = if title_lines.len() > 1 {
+            LEGEND_INDENT * SCALE / 4
+        } else {
+            label_width
+        };
+        for line in &title_lines {
+            whole
+                .draw_text(line, &letters(TITLE, INK), (title_left, title_top * SCALE))
+                .map_err(|error| said(&error))?;
+            title_top += TITLE_LINE;
+        }
         let (x_range, y_range) = self.ranges(inside(label_width));
-        let x_label = label_format(&x_range, 7);
+        let x_numbers = (inside(label_width).0 / (NUMBER_WIDTH * SCALE)).clamp(3, 7);
+        let x_numbers = u8::try_from(x_numbers).unwrap_or(7);
+        let x_label = label_format(&x_range, x_numbers);
         let mut chart = ChartBuilder::on(&area)
             .margin_top(top)
             .margin_left(8 * SCALE)
@@ -172,7 +222,10 @@ impl Chart {
             .map_err(|error| said(&error))?;
         chart
             .configure_mesh()
-            .x_labels(self.names().map_or(7, |names| names.len() + 2))
+            .x_labels(
+                self.names()
+                    .map_or(x_numbers.into(), |names| names.len() + 2),
+            )
             .y_labels(6)
             .x_label_formatter(&|value| self.x_name(*value).unwrap_or_else(|| x_label(value)))
             .y_label_formatter(&label_format(&y_range, 6))
@@ -293,7 +346,11 @@ impl Chart {
 
     /// Above the plane of the axes, pixels of the page.
     fn top(&self) -> i32 {
-        if self.title.is_empty() { 10 } else { 44 }
+        if self.title.is_empty() {
+            return 10;
+        }
+        let more = self.title_lines().len().saturating_sub(1);
+        44 + TITLE_LINE * i32::try_from(more).unwrap_or(0)
     }
 
     fn colour_bar(&self) -> Option<&ColourBar> {

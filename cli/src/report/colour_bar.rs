@@ -38,11 +38,11 @@ impl ColourBar {
         })
     }
 
-    /// Draws the bar in an area of [`WIDTH`], below a margin in pixels of the page.
+    /// Draws the bar with about so many numbers in an area of [`WIDTH`], below a margin in pixels of the page.
     ///
     /// # Errors
     /// Errors of the drawing library.
-    pub(crate) fn draw(&self, area: &Area<'_>, top: i32) -> Result<(), String> {
+    pub(crate) fn draw(&self, area: &Area<'_>, top: i32, numbers: u8) -> Result<(), String> {
         let largest = self.low.abs().max(self.high.abs());
         let exponent = if largest > 0.0 {
             largest.log10().floor()
@@ -81,8 +81,8 @@ impl ColourBar {
             .configure_mesh()
             .disable_mesh()
             .disable_x_axis()
-            .y_labels(9)
-            .y_label_formatter(&label_format(&(low..high), 9))
+            .y_labels(numbers.into())
+            .y_label_formatter(&label_format(&(low..high), numbers))
             .axis_style(stroke(AXIS, 1.0))
             .set_all_tick_mark_size(5 * SCALE)
             .label_style(letters(NUMBERS, INK))

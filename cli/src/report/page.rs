@@ -5,6 +5,7 @@ use askama::Template;
 use super::swimming::snapshots;
 use super::{Parameter, Report, figures, markup};
 use crate::failure::{Failure, Outcome};
+use crate::picture_file::FigureWidth;
 use crate::quantity;
 
 #[derive(Template)]
@@ -30,7 +31,7 @@ pub(crate) fn page(report: &Report) -> Outcome<String> {
     let (circles, fitted, start) = (&report.circles, &report.fitted_curve, &report.start_curve);
     written(&Page {
         report,
-        swimming: snapshots(&report.swimming),
+        swimming: snapshots(&report.swimming, FigureWidth::Page),
         displacement: figures::displacement(circles, fitted, start)?,
         sway: figures::delta_y(circles, fitted, start)?,
         yaw: figures::delta_theta(circles, fitted, start)?,

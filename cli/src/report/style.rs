@@ -32,6 +32,10 @@ pub(crate) const ZERO_CURVE: f64 = 5.0;
 
 /// Height of a legend's line, pixels of the page.
 pub(crate) const LEGEND_LINE: i32 = 22;
+/// From the left end of a legend to its names, pixels of the page.
+pub(crate) const LEGEND_INDENT: i32 = 40;
+/// Average width of a letter over its size; those of the built-in typeface are about as wide.
+const LETTER_WIDTH: f64 = 0.56;
 /// Arrow heads on a closed curve.
 const ARROWS: usize = 4;
 /// An arrow head from its tip to its back, and half as wide as it is at the back, pixels of the page.
@@ -185,23 +189,41 @@ pub(crate) fn head((x, y): Point) -> Vec<(i32, i32)> {
     ]
 }
 
-/// Names of curves with a piece of each, one below the other from a corner on; pixels of the page.
+/// Lines of a text whose letters have this size, none wider than `width` if its words allow; pixels of the page.
+pub(crate) fn broken(text: &str, size: i32, width: i32) -> Vec<String> {
+    if text.is_empty() {
+        return Vec::new();
+    }
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // hundreds
+    let letters = (f64::from(width.max(0)) / (f64::from(size) * LETTER_WIDTH)).floor() as usize;
+    let options = textwrap::Options::new(letters.max(1)).break_words(false);
+    let lines = textwrap::wrap(text, options);
+    lines
+        .into_iter()
+        .map(std::borrow::Cow::into_owned)
+        .collect()
+}
+
+/// Names of curves with a piece of each, one below the other from a corner on; a line without a colour goes on with the name above it.
+/// Pixels of the page.
 ///
 /// # Errors
 /// Errors of the drawing library.
 pub(crate) fn legend<'a>(
     area: &Area<'_>,
     (left, top): (i32, i32),
-    curves: impl Iterator<Item = (&'a str, RGBColor)>,
+    curves: impl Iterator<Item = (&'a str, Option<RGBColor>)>,
 ) -> Result<(), String> {
     let mut y = top + LEGEND_LINE / 2;
     for (name, color) in curves {
-        let piece = PathElement::new(
-            [(left * SCALE, y * SCALE), ((left + 30) * SCALE, y * SCALE)],
-            stroke(color, 2.6),
-        );
-        area.draw(&piece).map_err(|error| said(&error))?;
-        let at = ((left + 40) * SCALE, (y - 8) * SCALE);
+        if let Some(color) = color {
+            let piece = PathElement::new(
+                [(left * SCALE, y * SCALE), ((left + 30) * SCALE, y * SCALE)],
+                stroke(color, 2.6),
+            );
+            area.draw(&piece).map_err(|error| said(&error))?;
+        }
+        let at = ((left + LEGEND_INDENT) * SCALE, (y - 8) * SCALE);
         area.draw_text(name, &letters(WORDS, INK), at)
             .map_err(|error| said(&error))?;
         y += LEGEND_LINE;

@@ -1,13 +1,13 @@
 //! Folder of an atlas: its gaits and a picture of them.
 
-use std::fs;
 use std::path::PathBuf;
 
 use gait_optimizer::OptimalGait;
 
 use super::picture;
-use crate::failure::{Failure, Outcome};
+use crate::failure::Outcome;
 use crate::new_folder::NewFolder;
+use crate::picture_file::{FigureWidth, Kind};
 
 /// Gait of an atlas.
 pub(super) struct Entry<'a> {
@@ -24,6 +24,7 @@ pub(super) fn fill(
     name: &str,
     title: String,
     entries: Vec<Entry<'_>>,
+    width: FigureWidth,
 ) -> Outcome<PathBuf> {
     let mut gaits = Vec::with_capacity(entries.len());
     for (number, Entry { gait, value, path }) in entries.into_iter().enumerate() {
@@ -33,8 +34,7 @@ pub(super) fn fill(
         gaits.push((gait, value));
     }
     let path = folder.draft().join("atlas.svg");
-    fs::write(&path, picture::svg(title, &gaits)?)
-        .map_err(|error| Failure::Tried(format!("cannot write {}: {error}", path.display())))?;
+    Kind::Svg.write(&path, &picture::svg(title, &gaits, width)?, width)?;
     let picture = folder.place().join("atlas.svg");
     folder.publish()?;
     Ok(picture)

@@ -3,6 +3,7 @@
 use gait_optimizer::OptimalGait;
 
 use crate::failure::Outcome;
+use crate::picture_file::FigureWidth;
 use crate::report::chart::{Chart, Point, Series};
 use crate::report::style::CURVES;
 
@@ -15,7 +16,11 @@ const SIZE: (i32, i32) = (620, 580);
 ///
 /// # Errors
 /// Errors of the drawing.
-pub(super) fn svg(title: String, optima: &[(&OptimalGait, String)]) -> Outcome<String> {
+pub(super) fn svg(
+    title: String,
+    optima: &[(&OptimalGait, String)],
+    width: FigureWidth,
+) -> Outcome<String> {
     let mut series = Vec::new();
     let mut legend = Vec::new();
     for (number, ((gait, value), color)) in optima.iter().zip(CURVES.iter().cycle()).enumerate() {
@@ -23,7 +28,7 @@ pub(super) fn svg(title: String, optima: &[(&OptimalGait, String)]) -> Outcome<S
             break;
         }
         let points: Vec<Point> = gait.phi().iter().map(|phi| (phi.x, phi.y)).collect();
-        let (color, width) = (*color, 2.0);
+        let (color, breadth) = (*color, 2.0);
         series.push(Series::Arrows {
             points: points.clone(),
             color,
@@ -32,13 +37,13 @@ pub(super) fn svg(title: String, optima: &[(&OptimalGait, String)]) -> Outcome<S
             Series::Line {
                 points,
                 color,
-                width,
+                width: breadth,
             }
         } else {
             Series::Dashes {
                 points,
                 color,
-                width,
+                width: breadth,
             }
         });
         let dashed = if number < CURVES.len() {
@@ -58,5 +63,6 @@ pub(super) fn svg(title: String, optima: &[(&OptimalGait, String)]) -> Outcome<S
         series,
         legend,
     }
+    .wide(width)
     .svg()
 }

@@ -8,11 +8,12 @@ use plotters::prelude::*;
 use swimmer_model::Gait as _;
 
 use crate::failure::{Failure, Outcome};
+use crate::picture_file::{COLUMN, FigureWidth};
 use crate::report::colour_bar::{self, ColourBar};
 use crate::report::palette::Palette;
 use crate::report::style::{
-    AXIS, Area, CURVES, INK, LEGEND_LINE, NAMES, NUMBERS, Point, SCALE, TITLE, ZERO_CURVE, arrows,
-    finished, head, legend, letters, number, said, stroke,
+    AXIS, Area, CURVES, INK, LEGEND_INDENT, LEGEND_LINE, NAMES, NUMBERS, Point, SCALE, TITLE,
+    WORDS, ZERO_CURVE, arrows, broken, finished, head, legend, letters, number, said, stroke,
 };
 
 /// Contents of the figure.
@@ -25,6 +26,37 @@ pub(crate) struct Figure<'a> {
     pub(crate) row: Row,
     pub(crate) curves: &'a [LevelCurve],
     pub(crate) gaits: &'a [NamedGait],
+    pub(crate) width: FigureWidth,
+}
+
+impl Figure<'_> {
+    /// Side of the map, pixels of the page.
+    fn side(&self) -> i32 {
+        match self.width {
+            FigureWidth::Page => MAP,
+            FigureWidth::Column => COLUMN - LEFT - colour_bar::WIDTH,
+        }
+    }
+
+    /// Numbers along an axis.
+    fn numbers(&self) -> u8 {
+        match self.width {
+            FigureWidth::Page => 9,
+            FigureWidth::Column => 5,
+        }
+    }
+
+    /// Names of the gaits on lines, and the colour with the first of each.
+    fn legend(&self) -> Vec<(String, Option<RGBColor>)> {
+        let width = self.side() + colour_bar::WIDTH - LEGEND_INDENT;
+        let named = self.gaits.iter().zip(CURVES.iter().cycle());
+        named
+            .flat_map(|(gait, color)| {
+                let colors = std::iter::once(Some(*color)).chain(std::iter::repeat(None));
+                broken(&gait.name, WORDS, width).into_iter().zip(colors)
+            })
+            .collect()
+    }
 }
 
 /// Side of the map in pixels of the page.
@@ -46,9 +78,14 @@ const GAIT_POINTS: u32 = 1500;
 /// # Errors
 /// [`Failure::Tried`] when the drawing library gives up.
 pub(crate) fn svg(figure: &Figure<'_>) -> Outcome<String> {
-    let legend = i32::try_from(figure.gaits.len()).unwrap_or(i32::MAX / 1000) * LEGEND_LINE;
+    let lines = figure.legend().len();
+    let legend = i32::try_from(lines).unwrap_or(i32::MAX / 1000) * LEGEND_LINE;
     let legend = if legend > 0 { legend + 10 } else { 0 };
-    let size = (LEFT + MAP + colour_bar::WIDTH, TOP + MAP + BOTTOM + legend);
+    let side = figure.side();
+    let size = (
+        LEFT + side + colour_bar::WIDTH,
+        TOP + side + BOTTOM + legend,
+    );
     let mut text = String::new();
     {
         let pixels = (
@@ -65,6 +102,7 @@ pub(crate) fn svg(figure: &Figure<'_>) -> Outcome<String> {
 
 fn draw(figure: &Figure<'_>, area: &Area<'_>) -> Result<(), String> {
     area.fill(&WHITE).map_err(|error| said(&error))?;
+    let side = figure.side();
     area.draw_text(
         &figure.title,
         &letters(TITLE, INK),
@@ -72,12 +110,12 @@ fn draw(figure: &Figure<'_>, area: &Area<'_>) -> Result<(), String> {
     )
     .map_err(|error| said(&error))?;
     let (_, upper) = area.split_vertically(0);
-    let (map_area, bar_area) = upper.split_horizontally((LEFT + MAP) * SCALE);
+    let (map_area, bar_area) = upper.split_horizontally((LEFT + side) * SCALE);
     let half_width = figure.map.half_width();
     let grid = figure.map.grid(figure.row, NODES);
     let largest = grid.heights.amax().max(f64::MIN_POSITIVE);
 
-    let (map_area, _) = map_area.split_vertically((TOP + MAP + BOTTOM) * SCALE);
+    let (map_area, _) = map_area.split_vertically((TOP + side + BOTTOM) * SCALE);
     let mut chart = ChartBuilder::on(&map_area)
         .margin_top(TOP * SCALE)
         .margin_left(MARGIN * SCALE)
@@ -124,8 +162,8 @@ fn draw(figure: &Figure<'_>, area: &Area<'_>) -> Result<(), String> {
     chart
         .configure_mesh()
         .disable_mesh()
-        .x_labels(9)
-        .y_labels(9)
+        .x_labels(figure.numbers().into())
+        .y_labels(figure.numbers().into())
         .x_label_formatter(&|value| number(*value, 1))
         .y_label_formatter(&|value| number(*value, 1))
         .axis_style(stroke(AXIS, 1.0))
@@ -142,17 +180,17 @@ fn draw(figure: &Figure<'_>, area: &Area<'_>) -> Result<(), String> {
             stroke(AXIS, 1.0),
         )))
         .map_err(|error| said(&error))?;
-    let (bar_area, _) = bar_area.split_vertically((TOP + MAP) * SCALE);
+    let (bar_area, _) = bar_area.split_vertically((TOP + side) * SCALE);
     let bar = ColourBar {
         name: figure.quantity.to_owned(),
         low: -largest,
         high: largest,
         palette: Palette::Diverging,
     };
-    bar.draw(&bar_area, TOP)?;
-    let named = figure.gaits.iter().map(|named| named.name.as_str());
-    let named = named.zip(CURVES.iter().copied().cycle());
-    legend(area, (LEFT, TOP + MAP + BOTTOM), named)
+    bar.draw(&bar_area, TOP, figure.numbers())?;
+    let lines = figure.legend();
+    let named = lines.iter().map(|(name, color)| (name.as_str(), *color));
+    legend(area, (LEFT, TOP + side + BOTTOM), named)
 }
 
 /// Region of the map that is painted with one colour, before the regions inside it.

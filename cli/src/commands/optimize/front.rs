@@ -5,24 +5,18 @@ use std::str::FromStr;
 
 use gait_optimizer::{Fastest, Front};
 use operations::optimize::speed::{FrontOutput, Output};
-use swimmer_files::write_atomically;
 
 use crate::csv_text::csv_text;
 use crate::failure::Outcome;
 use crate::new_file::may_be_written;
+use crate::picture_file::{FigureWidth, Kind};
 use crate::report::chart::{Chart, INK, MEASURED, PREDICTED, Point, Series};
 
 /// Path of the front, with its form.
 #[derive(Debug, Clone)]
 pub(crate) struct FrontFile {
     path: PathBuf,
-    form: Form,
-}
-
-#[derive(Debug, Clone, Copy)]
-enum Form {
-    Figure,
-    Table,
+    kind: Kind,
 }
 
 impl FromStr for FrontFile {
@@ -30,31 +24,35 @@ impl FromStr for FrontFile {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let path = PathBuf::from(text);
-        let form = match path.extension().and_then(|ending| ending.to_str()) {
-            Some("svg") => Form::Figure,
-            Some("csv") => Form::Table,
-            _ => return Err("name a file that ends in .svg or .csv".to_owned()),
-        };
-        Ok(Self { path, form })
+        let kinds = [Kind::Svg, Kind::Png, Kind::Pdf, Kind::Csv];
+        let kind = Kind::of(&path, &kinds).map_err(|failure| failure.to_string())?;
+        Ok(Self { path, kind })
     }
 }
 
 impl FrontFile {
+    /// Kind of the file.
+    pub(crate) fn kind(&self) -> Kind {
+        self.kind
+    }
+
     /// Checks that the file may be written.
     pub(crate) fn may_be_written(&self) -> Outcome {
         may_be_written(&self.path)
     }
 
     /// Writes the front of an output, if it has one, and names the file in the output.
-    pub(crate) fn write(&self, output: &mut Output) -> Outcome {
+    pub(crate) fn write(&self, output: &mut Output, width: FigureWidth) -> Outcome {
         let Some(front) = &output.farthest else {
             return Ok(());
         };
-        let text = match self.form {
-            Form::Figure => figure(front, &output.name, output.length).svg()?,
-            Form::Table => table(front, output.length)?,
+        let text = match self.kind {
+            Kind::Csv => table(front, output.length)?,
+            _ => figure(front, &output.name, output.length)
+                .wide(width)
+                .svg()?,
         };
-        write_atomically(&self.path, text.as_bytes())?;
+        self.kind.write(&self.path, &text, width)?;
         output.front = Some(FrontOutput::new(self.path.clone(), front));
         Ok(())
     }

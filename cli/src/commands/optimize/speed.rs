@@ -11,6 +11,7 @@ use super::text::{add_arcs, add_gait, titled};
 use crate::arguments::{rate, seconds};
 use crate::bounds::CycleBounds;
 use crate::failure::Outcome;
+use crate::picture_file::FigureOptions;
 use crate::quantity::{self, Rows};
 
 /// Find the fastest gait: most net displacement per unit of time, without net rotation, with servos that turn no faster than a
@@ -40,8 +41,10 @@ pub(crate) struct Speed {
     robustly: Robustly,
     /// Also draw displacement per cycle against speed, of the farthest gaits in shorter and longer periods: a figure, or their
     /// table
-    #[arg(long, value_name = "FILE.svg|.csv", conflicts_with_all = ["period", "robust", "gain"])]
+    #[arg(long, value_name = "FILE.svg|.png|.pdf|.csv", conflicts_with_all = ["period", "robust", "gain"])]
     front: Option<FrontFile>,
+    #[command(flatten)]
+    figure: FigureOptions,
 }
 
 /// Direction of the displacement.
@@ -64,6 +67,9 @@ impl Objective for Speed {
         if let Some(front) = &self.front {
             front.may_be_written()?;
         }
+        let width = self
+            .figure
+            .width(self.front.as_ref().map(FrontFile::kind))?;
         let request = Request {
             swimmer,
             max_rate: self.max_rate.clone(),
@@ -79,7 +85,7 @@ impl Objective for Speed {
         };
         let mut output = speed::run(&request, context)?;
         if let Some(front) = &self.front {
-            front.write(&mut output)?;
+            front.write(&mut output, width)?;
         }
         Ok(output)
     }

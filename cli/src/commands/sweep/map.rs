@@ -13,7 +13,7 @@ use super::shown;
 use crate::failure::Outcome;
 use crate::new_file::may_be_written;
 use crate::output::{Output, document};
-use crate::picture_file::Kind;
+use crate::picture_file::{FigureOptions, Kind};
 use crate::quantity::{Rows, Table};
 
 /// Draw a finished grid over two of its axes, with lines where the kind of gait changes
@@ -39,6 +39,8 @@ pub(crate) struct Map {
     /// Write the picture: .svg, .png in pixels, or .pdf for print
     #[arg(short, long, value_name = "FILE.svg|.png|.pdf")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    figure: FigureOptions,
     /// Write the map's numbers as JSON, which the lab page reads
     #[arg(long, value_name = "FILE.json")]
     export: Option<PathBuf>,
@@ -74,6 +76,7 @@ impl Map {
             }
             None => None,
         };
+        let width = self.figure.width(kind)?;
         if let Some(path) = &self.export {
             may_be_written(path)?;
         }
@@ -84,7 +87,8 @@ impl Map {
             at: self.at,
         })?;
         if let (Some(path), Some(kind)) = (&self.output, kind) {
-            kind.write(path, &picture::drawn(&found.map, self.quantity)?)?;
+            let drawing = picture::drawn(&found.map, self.quantity, width)?;
+            kind.write(path, &drawing, width)?;
         }
         if let Some(path) = &self.export {
             write_atomically(path, document(&found.map).as_bytes())?;

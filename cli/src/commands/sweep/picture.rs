@@ -5,6 +5,7 @@ use sweep::{Map, MapAxis, Pareto};
 
 use super::map::MapQuantity;
 use crate::failure::{Failure, Outcome};
+use crate::picture_file::FigureWidth;
 use crate::quantity;
 use crate::report::chart::{Chart, INK, MEASURED, Series};
 use crate::report::colour_bar::ColourBar;
@@ -28,12 +29,13 @@ const KINDS: [RGBColor; 9] = [
 ];
 
 /// The picture as SVG.
-pub(super) fn drawn(map: &Map, what: MapQuantity) -> Outcome<String> {
-    match what {
-        MapQuantity::Pareto => pareto(map),
+pub(super) fn drawn(map: &Map, what: MapQuantity, width: FigureWidth) -> Outcome<String> {
+    let chart = match what {
+        MapQuantity::Pareto => pareto(map)?,
         MapQuantity::Structure => structure(map),
-        _ => quantity(map, what),
-    }
+        _ => quantity(map, what)?,
+    };
+    chart.wide(width).svg()
 }
 
 /// Words with their unit.
@@ -87,7 +89,7 @@ fn folds(map: &Map) -> impl Iterator<Item = Series> {
     })
 }
 
-fn quantity(map: &Map, what: MapQuantity) -> Outcome<String> {
+fn quantity(map: &Map, what: MapQuantity) -> Outcome<Chart> {
     let name = match what {
         MapQuantity::Efficiency => "efficiency",
         MapQuantity::Speed => "speed_over_length_per_s",
@@ -126,10 +128,10 @@ fn quantity(map: &Map, what: MapQuantity) -> Outcome<String> {
     series.extend(folds(map));
     series.push(Series::ColourBar(bar.clone()));
     let title = format!("{}, best for {}", found.words, map.objective);
-    chart(map, title, series, Vec::new()).svg()
+    Ok(chart(map, title, series, Vec::new()))
 }
 
-fn structure(map: &Map) -> Outcome<String> {
+fn structure(map: &Map) -> Chart {
     let mut counts = std::collections::BTreeMap::<&str, usize>::new();
     for arcs in map.structure.iter().flatten().flatten() {
         *counts.entry(arcs.as_str()).or_default() += 1;
@@ -163,10 +165,9 @@ fn structure(map: &Map) -> Outcome<String> {
         series,
         legend,
     )
-    .svg()
 }
 
-fn pareto(map: &Map) -> Outcome<String> {
+fn pareto(map: &Map) -> Outcome<Chart> {
     if map.pareto.is_empty() {
         return Err(Failure::BadInput(
             "no design has a speed: say max_rate in the spec, and plan again".to_owned(),
@@ -214,7 +215,7 @@ fn pareto(map: &Map) -> Outcome<String> {
             radius: 3.0,
         },
     ];
-    Chart {
+    Ok(Chart {
         title: format!(
             "designs that none beats in both; gaits best for {}",
             map.objective
@@ -231,8 +232,7 @@ fn pareto(map: &Map) -> Outcome<String> {
             ),
             ("designs of this map".to_owned(), BEHIND),
         ],
-    }
-    .svg()
+    })
 }
 
 /// Name of a design of the front: its values on the axes of the plan.

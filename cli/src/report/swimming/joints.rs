@@ -15,6 +15,9 @@ pub(super) struct Plane {
     reach: f64,
 }
 
+/// Sizes of letters: numbers at the axes, and names of the axes.
+const NUMBERS: i32 = 15;
+const NAMES: i32 = 15;
 /// Behind the curve, and the lines where an angle is zero.
 const PAPER: RGBColor = RGBColor(0xf5, 0xf7, 0xf9);
 const ZERO: RGBColor = RGBColor(0xd5, 0xdb, 0xe1);
@@ -61,18 +64,12 @@ impl Plane {
             );
             drawing.line(&[(left, down), (left + 4.0, down)], 1.0, (AXIS, 1.0));
             let text = degrees(angle);
-            drawing.words((across, bottom + 15.0), 12, INK, Anchor::Middle, &text);
-            drawing.words((left - 6.0, down + 4.0), 12, INK, Anchor::End, &text);
+            drawing.words((across, bottom + 17.0), NUMBERS, INK, Anchor::Middle, &text);
+            drawing.words((left - 6.0, down + 5.0), NUMBERS, INK, Anchor::End, &text);
         }
-        drawing.words(
-            (x, bottom + 16.0),
-            14,
-            INK,
-            Anchor::Middle,
-            "front joint φ₁",
-        );
+        drawing.words((x, bottom + 17.0), NAMES, INK, Anchor::Middle, "front φ₁");
         let above = (left, top - 6.0);
-        drawing.words(above, 14, INK, Anchor::Start, "back joint φ₂");
+        drawing.words(above, NAMES, INK, Anchor::Start, "back φ₂");
     }
 
     /// The first cycle of the gait, in the colours of time where there is no other.

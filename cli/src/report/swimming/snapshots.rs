@@ -5,16 +5,72 @@ use nalgebra::Vector2;
 use super::body::{BodyStyle, Window, covered, draw, extent};
 use super::joints::Plane;
 use super::{Swimming, time_color};
+use crate::picture_file::{COLUMN, FigureWidth};
 use crate::report::drawing::{Anchor, Drawing};
-use crate::report::style::{INK, Point, TITLE, WORDS, arrows};
+use crate::report::style::{INK, Point, TITLE, WORDS, arrows, broken};
 
-/// Width of the picture; area of the swimmer; the plane of the joint angles next to it. Pixels of the page.
-const WIDTH: f64 = 900.0;
-const LEFT: f64 = 24.0;
-const SCENE: f64 = 590.0;
-const TALLEST: f64 = 460.0;
-const LEAST: f64 = 250.0;
-const PLANE: (f64, f64) = (668.0, 208.0);
+/// Places in the picture, pixels of the page.
+struct Layout {
+    width: f64,
+    /// Left end and width of the swimmer's area.
+    left: f64,
+    scene: f64,
+    /// Greatest and least height of that area.
+    tallest: f64,
+    least: f64,
+    /// Side of the plane of the joint angles.
+    plane: f64,
+    /// The plane and the colours of time are below the swimmer instead of next to it.
+    is_column: bool,
+}
+
+impl Layout {
+    fn new(width: FigureWidth) -> Self {
+        match width {
+            FigureWidth::Page => Self {
+                width: 900.0,
+                left: 24.0,
+                scene: 590.0,
+                tallest: 460.0,
+                least: 250.0,
+                plane: 208.0,
+                is_column: false,
+            },
+            FigureWidth::Column => Self {
+                width: f64::from(COLUMN),
+                left: 8.0,
+                scene: f64::from(COLUMN) - 16.0,
+                tallest: 420.0,
+                least: 0.0,
+                plane: 200.0,
+                is_column: true,
+            },
+        }
+    }
+
+    /// Corner of the plane, and left end, width and height of the colours of time, for a scene of this top and height.
+    fn plane_and_time(&self, top: f64, height: f64) -> (Point, Point, f64) {
+        if self.is_column {
+            let corner = (66.0, top + height + BELOW + 20.0);
+            let left = corner.0 + self.plane + 36.0;
+            let time = (left, corner.1 + 0.5 * self.plane);
+            return (corner, time, self.width - 16.0 - left);
+        }
+        let corner = (668.0, top + (height - self.plane) / 2.0);
+        (corner, (corner.0, top + height + 20.0), self.plane)
+    }
+
+    /// Height of the whole picture.
+    fn height(&self, top: f64, height: f64) -> f64 {
+        let plane = if self.is_column {
+            self.plane + 52.0
+        } else {
+            0.0
+        };
+        top + height + BELOW + plane
+    }
+}
+
 /// Bodies of one cycle, the last one included, and at most of several: more hide each other.
 const OF_ONE: usize = 9;
 const OF_SEVERAL: usize = 5;
@@ -28,7 +84,8 @@ const HEAD: f64 = 10.0;
 const PIECES: u8 = 60;
 
 /// The picture as SVG.
-pub(crate) fn snapshots(swimming: &Swimming) -> String {
+pub(crate) fn snapshots(swimming: &Swimming, width: FigureWidth) -> String {
+    let layout = Layout::new(width);
     let shown = shown(swimming);
     let bodies = shown
         .iter()
@@ -39,21 +96,35 @@ pub(crate) fn snapshots(swimming: &Swimming) -> String {
         .collect();
     let (low, high) = extent(&places);
     let (across, up) = ((high.x - low.x).max(1e-9), (high.y - low.y).max(1e-9));
-    let scale = ((SCENE - 2.0 * AIR) / across).min((TALLEST - 2.0 * AIR) / up);
-    let height = (scale * up + 2.0 * AIR).max(LEAST);
-    let top = if swimming.title.is_empty() { 8.0 } else { 46.0 };
+    let inner = layout.scene - 2.0 * AIR;
+    let scale = (inner / across).min((layout.tallest - 2.0 * AIR) / up);
+    let height = (scale * up + 2.0 * AIR).max(layout.least);
+    #[allow(clippy::cast_possible_truncation)] // hundreds
+    let lines = broken(
+        &swimming.title,
+        TITLE,
+        (layout.width - 2.0 * layout.left) as i32,
+    );
+    let top = match lines.len() {
+        0 => 8.0,
+        lines => 22.0 + 24.0 * lines as f64,
+    };
     let window = Window::showing(
         &places,
-        (LEFT + AIR, top + AIR),
-        (SCENE - 2.0 * AIR, height - 2.0 * AIR),
+        (layout.left + AIR, top + AIR),
+        (inner, height - 2.0 * AIR),
         scale,
     );
-    let mut drawing = Drawing::new(swimming.name(), WIDTH, top + height + BELOW);
-    drawing.words((LEFT, 28.0), TITLE, INK, Anchor::Start, &swimming.title);
+    let mut drawing = Drawing::new(swimming.name(), layout.width, layout.height(top, height));
+    for (number, line) in lines.iter().enumerate() {
+        let at = (layout.left, 28.0 + 24.0 * number as f64);
+        drawing.words(at, TITLE, INK, Anchor::Start, line);
+    }
     bodies_and_path(&mut drawing, &window, swimming, &shown);
-    scale_bar(&mut drawing, swimming, scale, top + height + 20.0);
-    time_bar(&mut drawing, swimming, top + height + 20.0);
-    let plane = Plane::new(swimming, (PLANE.0, top + (height - PLANE.1) / 2.0), PLANE.1);
+    scale_bar(&mut drawing, swimming, &layout, scale, top + height + 20.0);
+    let (corner, time, time_width) = layout.plane_and_time(top, height);
+    time_bar(&mut drawing, swimming, time, time_width);
+    let plane = Plane::new(swimming, corner, layout.plane);
     plane.frame(&mut drawing);
     plane.gait(&mut drawing, swimming, swimming.cycles == 1);
     for place in &shown {
@@ -143,15 +214,16 @@ fn direction(drawing: &mut Drawing, swimming: &Swimming, path: &[Point]) {
 }
 
 /// A bar of a round part of L, about a fifth of the scene long.
-fn scale_bar(drawing: &mut Drawing, swimming: &Swimming, scale: f64, y: f64) {
+fn scale_bar(drawing: &mut Drawing, swimming: &Swimming, layout: &Layout, scale: f64, y: f64) {
     let length = swimming.length();
-    let wanted = 0.2 * SCENE / (scale * length);
+    let wanted = 0.2 * layout.scene / (scale * length);
     let rounds = [
         0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0_f64,
     ];
     let fits = |part: &&f64| **part <= wanted;
     let part = rounds.iter().rev().find(fits).copied().unwrap_or(0.01);
-    let (left, right) = (LEFT + AIR, LEFT + AIR + part * length * scale);
+    let left = layout.left + AIR;
+    let right = left + part * length * scale;
     drawing.line(&[(left, y), (right, y)], 2.4, (INK, 1.0));
     for end in [left, right] {
         drawing.line(&[(end, y - 5.0), (end, y + 5.0)], 1.6, (INK, 1.0));
@@ -166,8 +238,7 @@ fn scale_bar(drawing: &mut Drawing, swimming: &Swimming, scale: f64, y: f64) {
 }
 
 /// Legend of the colours.
-fn time_bar(drawing: &mut Drawing, swimming: &Swimming, y: f64) {
-    let (left, width) = (PLANE.0, PLANE.1);
+fn time_bar(drawing: &mut Drawing, swimming: &Swimming, (left, y): Point, width: f64) {
     let step = width / f64::from(PIECES);
     for piece in 0..PIECES {
         let from = left + step * f64::from(piece);
