@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use swimmer_files::{FileError, GaitSpec, check_playable_period, parse_angle};
 use toml::Spanned;
 
-use crate::adaptive::CampaignGoal;
+use crate::adaptive::{CampaignGoal, USUAL_ACCURACY_M};
 
 /// Most repeats, cycles, gaits and attempts: more is a slip of the keyboard.
 const MOST: u32 = 10_000;
@@ -480,7 +480,12 @@ fn read_adaptive(place: &Text<'_>, raw: &RawAdaptive) -> Result<AdaptiveSpec, Fi
             "no length in metres",
         )?,
         budget_s: 3600.0 * hours,
-        accuracy_m: place.number(raw.accuracy.as_ref(), 1e-3, length, "no length in metres")?,
+        accuracy_m: place.number(
+            raw.accuracy.as_ref(),
+            USUAL_ACCURACY_M,
+            length,
+            "no length in metres",
+        )?,
     })
 }
 

@@ -9,7 +9,7 @@ use std::sync::OnceLock;
 
 use experiment::adaptive::{
     CampaignGoal, Candidate, Decision, DragEstimate, MeasuredTrial, Response, StartParameters,
-    advise, estimate,
+    USUAL_ACCURACY_M, advise, estimate,
 };
 use forecast::{Played, Servos, forecast};
 use hidden_robot::{CYCLES, HiddenRobot, PERIOD_S, SETTLE_S};
@@ -21,7 +21,7 @@ const GOAL: CampaignGoal = CampaignGoal {
     sphere_radius_m: 1e-3,
     level: 0.95,
     budget_s: 1e6,
-    accuracy_m: 1e-3,
+    accuracy_m: USUAL_ACCURACY_M,
 };
 /// Trials of the ladder after which a robot is given up.
 const MOST: usize = 400;
@@ -117,20 +117,32 @@ fn is_reached(fit: &DragEstimate) -> bool {
         && fit.sphere_radius_half_width_m <= GOAL.sphere_radius_m
 }
 
-/// The campaign that [`advise`] leads.
+/// The campaign that [`advise`] leads. The trials played lie in the range that is forecast before the first one.
 fn adaptive(robot: &mut HiddenRobot) -> Campaign {
     let candidates = candidates();
-    let mut trials = Vec::new();
+    let mut trials: Vec<MeasuredTrial> = Vec::new();
+    let (mut forecast, mut measured) = (None, None);
     loop {
         let advice = advise(&candidates, &trials, start(), &GOAL).unwrap();
         match advice.decision {
             Decision::Play(next) => {
+                let range = next.fewest_trials_left..=next.trials_left;
+                assert!(next.is_goal_within_budget);
+                if next.is_noise_measured {
+                    measured.get_or_insert(trials.len() + next.trials_left);
+                }
+                forecast.get_or_insert(range);
                 let index = next.candidate;
                 trials.push(robot.trial(index, &gaits()[index].0));
             }
             Decision::Reached => {
                 let estimate = advice.estimate.unwrap();
                 assert!(is_reached(&estimate));
+                let (played, range) = (trials.len(), forecast.unwrap());
+                println!(
+                    "forecast {range:?}, by the noise of three trials {measured:?}, played {played}"
+                );
+                assert!(range.contains(&played), "{played} of {range:?}");
                 return Campaign {
                     trials,
                     seconds: advice.tank_time_s,
@@ -224,4 +236,38 @@ fn forty_campaigns_save_tank_time() {
     assert!(ratio <= 0.6, "{ratio}");
     assert!(rungs >= 25.0, "{rungs}");
     assert!(covered.iter().all(|count| *count >= 36), "{covered:?}");
+}
+
+/// The forecast is no longer than the tank time, and the fewest trials are six.
+#[test]
+fn a_forecast_keeps_to_the_budget() {
+    let candidates = candidates();
+    let next = |trials: &[MeasuredTrial], goal: &CampaignGoal| {
+        let advice = advise(&candidates, trials, start(), goal).unwrap();
+        let Decision::Play(next) = advice.decision else {
+            panic!("{advice:?}");
+        };
+        next
+    };
+    let far = next(&[], &GOAL);
+    assert!(far.is_goal_within_budget && !far.is_noise_measured);
+    assert_eq!(far.fewest_trials_left, 6);
+    assert!(far.trials_left > 6, "{far:?}");
+
+    let tight = CampaignGoal {
+        budget_s: 7.5 * candidates[0].seconds,
+        ..GOAL
+    };
+    let near = next(&[], &tight);
+    assert!(!near.is_goal_within_budget);
+    assert_eq!((near.fewest_trials_left, near.trials_left), (6, 7));
+
+    // A trial whose track cannot be used takes time, and brings the goal no nearer.
+    let unusable = MeasuredTrial {
+        candidate: 0,
+        values: [f64::NAN; 3],
+        standard_errors: [f64::NAN; 3],
+    };
+    let after = next(&[unusable], &tight);
+    assert_eq!((after.fewest_trials_left, after.trials_left), (6, 6));
 }

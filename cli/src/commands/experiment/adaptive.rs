@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use calibrate::{CalibrateError, RunData, Statistics, Timing, calibrate_run, load_tracks};
 use experiment::adaptive::{
-    CampaignAdvice, CampaignGoal, Candidate, Decision, Response, StartParameters, advise,
+    CampaignAdvice, CampaignGoal, Candidate, Decision, NextTrial, Response, StartParameters, advise,
 };
 use experiment::unattended::{Entry, Journal, TrialQuantities};
 use swimmer_files::Reflectors;
@@ -178,12 +178,11 @@ pub(super) fn in_words(advice: &CampaignAdvice) -> String {
         Decision::Play(next) => {
             let _ = write!(
                 text,
-                "Next: {}; expected then: χ ± {:.2} %, r_s ± {}. About {} trials and {:.2} h are left to the goal.",
+                "Next: {}; expected then: χ ± {:.2} %, r_s ± {}. {}",
                 next.gait,
                 100.0 * next.chi_share,
                 quantity::length(next.sphere_radius_m),
-                next.trials_left,
-                next.seconds_left / 3600.0
+                left(next)
             );
         }
         Decision::Reached => text.push_str("Both intervals are as narrow as requested."),
@@ -192,4 +191,70 @@ pub(super) fn in_words(advice: &CampaignAdvice) -> String {
         ),
     }
     text
+}
+
+/// Trials that are left to the goal, in words.
+fn left(next: &NextTrial) -> String {
+    let hours = next.seconds_left / 3600.0;
+    let most = match next.trials_left {
+        1 => "1 trial".to_owned(),
+        count => format!("{count} trials"),
+    };
+    match (next.is_noise_measured, next.is_goal_within_budget) {
+        (true, true) => format!("About {most} and {hours:.2} h are left to the goal."),
+        (true, false) => format!(
+            "The goal is not expected within the campaign's `hours`, which leave time for {most}."
+        ),
+        (false, true) => format!(
+            "Left to the goal: at least {}, at most {most} and {hours:.2} h, the latter if lengths scatter by the spec's `accuracy` from \
+             trial to trial. Three trials show the scatter.",
+            next.fewest_trials_left
+        ),
+        (false, false) => format!(
+            "Left to the goal: at least {}; the campaign's `hours` end after {most}, too few if lengths scatter by the spec's `accuracy` \
+             from trial to trial. Three trials show the scatter.",
+            next.fewest_trials_left
+        ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn left_after(trials_left: usize, measured: bool, within: bool) -> String {
+        left(&NextTrial {
+            candidate: 0,
+            gait: "circle-80deg".to_owned(),
+            chi_share: 0.01,
+            sphere_radius_m: 1e-3,
+            trials_left,
+            seconds_left: 360.0 * trials_left as f64,
+            fewest_trials_left: 1,
+            is_noise_measured: measured,
+            is_goal_within_budget: within,
+        })
+    }
+
+    #[test]
+    fn one_trial_is_singular() {
+        assert_eq!(
+            left_after(1, true, true),
+            "About 1 trial and 0.10 h are left to the goal."
+        );
+        assert_eq!(
+            left_after(2, true, true),
+            "About 2 trials and 0.20 h are left to the goal."
+        );
+        assert!(left_after(1, true, false).ends_with("time for 1 trial."));
+    }
+
+    #[test]
+    fn without_measured_noise_a_range_is_stated() {
+        let text = left_after(30, false, true);
+        assert!(
+            text.contains("at least 1, at most 30 trials and 3.00 h"),
+            "{text}"
+        );
+    }
 }
