@@ -1,6 +1,6 @@
 //! A fit of the sphere and χ to reported results: `cargo run --release -p calibrate --example fit_results CAMPAIGN.toml`
 
-use calibrate::{CampaignData, FitOptions, assess, calibrate_campaign};
+use calibrate::{CampaignData, FitOptions, JointEstimate, assess, calibrate_campaign};
 use swimmer_files::Campaign;
 
 /// Three circles of the paper's robot, as read off a figure, rounded to a tenth of a millimetre.
@@ -36,7 +36,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let [low, high] = found.fit.intervals.chi;
     println!("r_s = {:.2} mm", 1e3 * found.fit.sphere_radius);
     println!("chi = {:.3}, {low:.3} to {high:.3}", found.fit.chi);
-    let assessment = assess(&found, None)?;
+    let assessment = assess(&found, &JointEstimate::of(&found)?, None);
     println!("{}: {}", assessment.verdict, assessment.reasons.join("; "));
     Ok(())
 }

@@ -10,7 +10,7 @@ use serde::{Serialize, Serializer};
 use swimmer_files::{AnyGait, Campaign, GaitSpec, ServoFile};
 use swimmer_model::{Gait as _, Links, Swimmer};
 
-use crate::assessment::recommended;
+use crate::assessment::JointEstimate;
 use crate::error::FitError;
 use crate::fit::CampaignFit;
 use crate::fit::likelihood::Estimate;
@@ -61,12 +61,16 @@ pub struct Advice {
 ///
 /// # Errors
 /// [`FitError`]: the runs do not determine r_s and χ.
-pub fn advise(campaign: &Campaign, found: &CampaignFit) -> Result<Advice, FitError> {
+pub fn advise(
+    campaign: &Campaign,
+    found: &CampaignFit,
+    estimate: &JointEstimate,
+) -> Result<Advice, FitError> {
     let undetermined = || FitError::Undetermined {
         parameters: "r_s, chi".to_owned(),
     };
-    let (model, estimate) = recommended(found)?;
-    let known = Known::of(&estimate).ok_or_else(undetermined)?;
+    let (model, estimate) = estimate.recommended();
+    let known = Known::of(estimate).ok_or_else(undetermined)?;
     let period_s = found.usual_period_s();
     let weigh = |gait: GaitSpec, shape: &AnyGait| -> Option<Candidate> {
         if !plays(

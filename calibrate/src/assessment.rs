@@ -25,6 +25,8 @@ pub use repeats::Repeats;
 pub use systematics::{Nuisance, Systematics, Unforeseen};
 pub use verdict::{Headline, Verdict};
 
+use std::fmt;
+
 use crate::error::FitError;
 use crate::evidence::Evidence;
 use crate::fit::CampaignFit;
@@ -127,34 +129,66 @@ impl Plain {
     }
 }
 
-/// The model of the recommended intervals, with all that may move, and its estimate: that with systematic errors if the runs
-/// suffice for it, else that of r_s and χ alone.
-pub(crate) fn recommended(found: &CampaignFit) -> Result<(RunModel, Estimate), FitError> {
-    let plain = Plain::of(found)?;
-    let priors = known::priors(found, &plain.model);
-    Ok(match systematics::Joint::of(&plain, &priors) {
-        Some(joint) => (plain.model.with(joint.parameters), joint.estimate),
-        None => (plain.model, plain.telling),
-    })
+/// Estimate of r_s and χ with every prior. [`assess`] and [`advise`](crate::advise) start from it; it takes longer than the rest of them,
+/// so it is computed once for both.
+pub struct JointEstimate {
+    plain: Plain,
+    priors: Vec<known::Known>,
+    /// `None` if the runs do not suffice for it.
+    joint: Option<systematics::Joint>,
 }
 
-/// Assesses a finished fit, with its `evidence` if that was computed.
-///
-/// # Errors
-/// [`FitError`]: the runs do not determine r_s and χ.
-pub fn assess(found: &CampaignFit, evidence: Option<&Evidence>) -> Result<Assessment, FitError> {
-    let plain = Plain::of(found)?;
-    let priors = known::priors(found, &plain.model);
-    let joint = systematics::Joint::of(&plain, &priors);
-    let systematics = joint
-        .as_ref()
-        .and_then(|joint| joint.systematics(&plain, found.fit.intervals.level));
-    let goodness = goodness::goodness(found, &plain, joint.as_ref());
-    let explanations = explanations::explanations(&plain);
-    let budget = budget::budget(&plain, &priors);
-    let agreement = joint
-        .as_ref()
-        .and_then(|joint| agreement::agreement(found, &plain, joint));
+impl fmt::Debug for JointEstimate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("JointEstimate").finish_non_exhaustive()
+    }
+}
+
+impl JointEstimate {
+    /// Computes the estimate of a finished fit.
+    ///
+    /// # Errors
+    /// [`FitError`]: the runs do not determine r_s and χ.
+    pub fn of(found: &CampaignFit) -> Result<Self, FitError> {
+        let plain = Plain::of(found)?;
+        let priors = known::priors(found, &plain.model);
+        let joint = systematics::Joint::of(&plain, &priors);
+        Ok(Self {
+            plain,
+            priors,
+            joint,
+        })
+    }
+
+    /// The model of the recommended intervals, with all that may move, and its estimate: that with systematic errors if the runs
+    /// suffice for it, else that of r_s and χ alone.
+    pub(crate) fn recommended(&self) -> (RunModel, &Estimate) {
+        let model = &self.plain.model;
+        let (parameters, estimate) = match &self.joint {
+            Some(joint) => (&joint.parameters, &joint.estimate),
+            None => (&model.parameters, &self.plain.telling),
+        };
+        (model.with(parameters.clone()), estimate)
+    }
+}
+
+/// Assesses a finished fit by its joint estimate, with its `evidence` if that was computed.
+pub fn assess(
+    found: &CampaignFit,
+    estimate: &JointEstimate,
+    evidence: Option<&Evidence>,
+) -> Assessment {
+    let JointEstimate {
+        plain,
+        priors,
+        joint,
+    } = estimate;
+    let joint = joint.as_ref();
+    let systematics = joint.and_then(|joint| joint.systematics(plain, found.fit.intervals.level));
+    let goodness = goodness::goodness(found, plain, joint);
+    let explanations = explanations::explanations(plain);
+    let budget = budget::budget(plain, priors);
+    let agreement = joint.and_then(|joint| agreement::agreement(found, plain, joint));
     let headline = verdict::headline(found, evidence, systematics.as_ref(), agreement);
     let (verdict, reasons) = verdict::verdict(
         found,
@@ -165,7 +199,7 @@ pub fn assess(found: &CampaignFit, evidence: Option<&Evidence>) -> Result<Assess
         &headline,
         agreement,
     );
-    Ok(Assessment {
+    Assessment {
         verdict,
         reasons,
         headline,
@@ -173,5 +207,5 @@ pub fn assess(found: &CampaignFit, evidence: Option<&Evidence>) -> Result<Assess
         systematics,
         budget,
         explanations,
-    })
+    }
 }

@@ -15,7 +15,8 @@
 //!
 //! ```
 //! use std::fmt::Write;
-//! use calibrate::{CampaignData, EvidenceOptions, FitOptions, NuisanceParameter, advise, amplitude_by_sway, assess, calibrate_campaign, fit_nuisance};
+//! use calibrate::{CampaignData, EvidenceOptions, FitOptions, JointEstimate, NuisanceParameter, advise, amplitude_by_sway, assess};
+//! use calibrate::{calibrate_campaign, fit_nuisance};
 //! use calibrate::{other_gaits, predict, weigh_evidence};
 //! use swimmer_files::{AnyGait, Campaign, SwimmerFile};
 //!
@@ -49,9 +50,10 @@
 //! assert!((factor - 40.0 / 44.0).abs() < 1e-3);
 //!
 //! let evidence = weigh_evidence(&found, EvidenceOptions { draws: 50, seed: 1 })?;
-//! let assessment = assess(&found, Some(&evidence))?;
+//! let estimate = JointEstimate::of(&found)?;
+//! let assessment = assess(&found, &estimate, Some(&evidence));
 //! assert_ne!(assessment.verdict.word(), "do not use", "{:?}", assessment.reasons);
-//! assert!(!advise(&campaign, &found)?.candidates.is_empty());
+//! assert!(!advise(&campaign, &found, &estimate)?.candidates.is_empty());
 //! let scale = fit_nuisance(&found, &[NuisanceParameter::Scale])?;
 //! assert_eq!(scale.parameters.len(), 3);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -85,7 +87,7 @@ mod walls;
 mod wrong_gait;
 
 pub use advice::{Advice, Candidate, advise};
-pub use assessment::{Assessment, Verdict, assess};
+pub use assessment::{Assessment, JointEstimate, Verdict, assess};
 pub use campaign::calibrate_campaign;
 pub use cycles::{
     Cycle, CycleError, CycleWarning, Cycles, LeftOut, Loss, Periodicity, Phase, Statistics, Timing,

@@ -11,9 +11,9 @@ use std::path::Path;
 
 use calibrate::{
     Advice, Assessment, CalibrateError, CampaignData, CampaignFit, Evidence, EvidenceOptions,
-    FitError, FitOptions, NuisanceFit, NuisanceParameter, RunResult, TrackError, TrackOptions,
-    UsedPoints, advise, assess, calibrate_campaign, calibrate_run, fit_nuisance, load_run_of,
-    usual_reflectors, weigh_evidence,
+    FitError, FitOptions, JointEstimate, NuisanceFit, NuisanceParameter, RunResult, TrackError,
+    TrackOptions, UsedPoints, advise, assess, calibrate_campaign, calibrate_run, fit_nuisance,
+    load_run_of, usual_reflectors, weigh_evidence,
 };
 use swimmer_files::{
     AnyGait, Campaign, GaitSpec, PointName, Reflector, Reflectors, RigidBody, SwimmerFile,
@@ -36,6 +36,8 @@ pub struct Fitted {
     pub result: CampaignFit,
     /// Likelihood, profiles and bootstrap, after [`Fitted::weigh_evidence`].
     pub evidence: Option<Evidence>,
+    /// Joint estimate, computed by the first of the steps that start from it.
+    estimate: Option<JointEstimate>,
     /// The output so far.
     pub output: Output,
 }
@@ -57,6 +59,7 @@ impl Fitted {
             campaign,
             result,
             evidence: None,
+            estimate: None,
             output,
         })
     }
@@ -98,7 +101,8 @@ impl Fitted {
     /// # Errors
     /// The fit with systematics fails.
     pub fn assess(&mut self, name: impl Fn(&Path) -> String) -> Result<Assessment, Error> {
-        let assessed = assess(&self.result, self.evidence.as_ref())?;
+        let estimate = joint_estimate(&mut self.estimate, &self.result)?;
+        let assessed = assess(&self.result, estimate, self.evidence.as_ref());
         self.output.assessment = Some(assessed.document(&self.result, name));
         Ok(assessed)
     }
@@ -117,9 +121,22 @@ impl Fitted {
     /// # Errors
     /// A candidate cannot be predicted.
     pub fn advise(&mut self) -> Result<&Advice, Error> {
-        let advice = advise(&self.campaign, &self.result)?;
+        let estimate = joint_estimate(&mut self.estimate, &self.result)?;
+        let advice = advise(&self.campaign, &self.result, estimate)?;
         Ok(self.output.advice.insert(advice))
     }
+}
+
+/// Returns the joint estimate of a fit, and computes it if that was not done yet.
+fn joint_estimate<'a>(
+    place: &'a mut Option<JointEstimate>,
+    result: &CampaignFit,
+) -> Result<&'a JointEstimate, FitError> {
+    let estimate = match place.take() {
+        Some(estimate) => estimate,
+        None => JointEstimate::of(result)?,
+    };
+    Ok(place.insert(estimate))
 }
 
 /// Names of the middle link's points or body in the file of a single run.

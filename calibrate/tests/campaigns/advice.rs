@@ -3,7 +3,8 @@
 use crate::twin_campaigns;
 
 use calibrate::{
-    Candidate, EvidenceOptions, FitOptions, advise, calibrate_campaign, weigh_evidence,
+    Candidate, EvidenceOptions, FitOptions, JointEstimate, advise, calibrate_campaign,
+    weigh_evidence,
 };
 use swimmer_files::GaitSpec;
 use twin_campaigns::Laboratory;
@@ -40,7 +41,7 @@ fn advice_that_is_followed_narrows_the_intervals() {
     let base = [45.0, 55.0, 65.0, 75.0];
     let (campaign, data) = laboratory(&base, 1).campaign();
     let found = calibrate_campaign(&campaign, &data, FitOptions::default()).unwrap();
-    let advice = advise(&campaign, &found).unwrap();
+    let advice = advise(&campaign, &found, &JointEstimate::of(&found).unwrap()).unwrap();
     let circle = |degrees: f64| -> Candidate {
         let is = |c: &&Candidate| matches!(c.gait, GaitSpec::Circle { amplitude, .. } if (amplitude.to_degrees() - degrees).abs() < 1e-9);
         advice.candidates.iter().find(is).unwrap().clone()

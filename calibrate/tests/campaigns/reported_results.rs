@@ -7,8 +7,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use calibrate::{
-    CampaignData, CampaignFit, EvidenceOptions, FitOptions, advise, assess, calibrate_campaign,
-    fit_nuisance, predict, weigh_evidence,
+    CampaignData, CampaignFit, EvidenceOptions, FitOptions, JointEstimate, advise, assess,
+    calibrate_campaign, fit_nuisance, predict, weigh_evidence,
 };
 use judged::{Chance, LEVEL, holds};
 use lab::Lab;
@@ -23,9 +23,10 @@ fn fitted(campaign: &Campaign, data: &CampaignData) -> CampaignFit {
         seed: 1,
     };
     let evidence = weigh_evidence(&found, options).unwrap();
-    let assessment = assess(&found, Some(&evidence)).unwrap();
+    let estimate = JointEstimate::of(&found).unwrap();
+    let assessment = assess(&found, &estimate, Some(&evidence));
     println!("{:?} {:?}", assessment.verdict, assessment.reasons);
-    advise(campaign, &found).unwrap();
+    advise(campaign, &found, &estimate).unwrap();
     let _ = fit_nuisance(&found, &[calibrate::NuisanceParameter::Scale]);
     found
 }

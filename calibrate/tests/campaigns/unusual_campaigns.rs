@@ -10,8 +10,8 @@ use std::sync::mpsc;
 use std::time::Duration;
 
 use calibrate::{
-    CalibrateError, CampaignData, FitOptions, FitWarning, Verdict, assess, calibrate_campaign,
-    predict,
+    CalibrateError, CampaignData, FitOptions, FitWarning, JointEstimate, Verdict, assess,
+    calibrate_campaign, predict,
 };
 use judged::Judged;
 use lab::{Lab, Run};
@@ -110,7 +110,7 @@ fn a_recording_that_is_there_twice_is_not_trusted() {
     campaign.runs[3] = campaign.runs[2].clone();
     data.runs[3] = data.runs[2].clone();
     let found = calibrate_campaign(&campaign, &data, FitOptions::default()).unwrap();
-    let assessment = assess(&found, None).unwrap();
+    let assessment = assess(&found, &JointEstimate::of(&found).unwrap(), None);
     assert_eq!(assessment.verdict, Verdict::DoNotUse);
     assert!(
         assessment
@@ -197,7 +197,7 @@ fn results_without_errors() {
         low < 3.598 && 3.598 < high && high - low < 0.2,
         "{low} {high}"
     );
-    let assessment = assess(&found, None).unwrap();
+    let assessment = assess(&found, &JointEstimate::of(&found).unwrap(), None);
     println!("{:?} {:?}", assessment.verdict, assessment.reasons);
     assert_eq!(assessment.verdict, Verdict::Caution);
     assert!(assessment.goodness.reduced_chi2.is_none());

@@ -2,8 +2,8 @@
 
 use calibrate::assessment::{Assessment, Systematics};
 use calibrate::{
-    CampaignFit, EvidenceOptions, FitOptions, Intervals, Verdict, assess, calibrate_campaign,
-    weigh_evidence,
+    CampaignFit, EvidenceOptions, FitOptions, Intervals, JointEstimate, Verdict, assess,
+    calibrate_campaign, weigh_evidence,
 };
 
 use crate::lab::{Faults, Lab, Run};
@@ -48,7 +48,7 @@ impl Judged {
         let likelihood = evidence.likelihood.estimate;
         Ok(Self {
             truth: [lab.body.sphere, lab.body.chi],
-            assessment: assess(&found, Some(&evidence))?,
+            assessment: assess(&found, &JointEstimate::of(&found)?, Some(&evidence)),
             likelihood: [likelihood.sphere_radius, likelihood.chi],
             found,
         })

@@ -31,6 +31,7 @@ pub(crate) fn write(calibrated: &Calibrated, file: &Path, folder: &NewFolder) ->
         result: found,
         output,
         evidence: Some(evidence),
+        ..
     } = &calibrated.fitted
     else {
         return Err(Failure::Tried(
