@@ -258,57 +258,84 @@ pub(super) fn cycle_start(bins: &[Bin], period_s: f64, model: &Harmonics) -> Opt
 
 /// By how much of a period the model must be moved for its θ to match the measured one best.
 pub(crate) fn shift(measured: &[[f64; 2]], model: &Harmonics) -> Option<f64> {
+    /// Places tried, 36 in a period of the highest harmonic.
+    const PLACES: u32 = 180;
     // θ(t) = Σ c cos hω(t − zero) + s sin …; the model runs from its start: shift ψ = ω (start − zero).
     // Overlap Σ Re(conj(M) C e^{ihψ}) with C = c − is.
-    let products: Vec<(f64, f64)> = measured
-        .iter()
-        .zip(model)
-        .map(|(m, r)| (r[0] * m[0] + r[1] * m[1], r[1] * m[0] - r[0] * m[1]))
-        .collect();
-    let overlap = |psi: f64| {
-        sum(&products, psi, |_, (re, im), (sin, cos)| {
-            re * cos - im * sin
-        })
-    };
-    let slope = |psi: f64| {
-        sum(&products, psi, |h, (re, im), (sin, cos)| {
-            -h * (re * sin + im * cos)
-        })
-    };
-    let bend = |psi: f64| {
-        sum(&products, psi, |h, (re, im), (sin, cos)| {
-            -h * h * (re * cos - im * sin)
-        })
-    };
-    let looks = 720;
-    let place = |i: i32| TAU * f64::from(i) / f64::from(looks);
-    let mut psi =
-        place((0..looks).max_by(|a, b| overlap(place(*a)).total_cmp(&overlap(place(*b))))?);
+    let products: [(f64, f64); HARMONICS] = std::array::from_fn(|h| {
+        let (m, r) = (measured.get(h).copied().unwrap_or_default(), model[h]);
+        (r[0] * m[0] + r[1] * m[1], r[1] * m[0] - r[0] * m[1])
+    });
+    let place = |i: u32| TAU * f64::from(i) / f64::from(PLACES);
+    let overlaps = (0..PLACES).map(|i| (Overlap::at(place(i), &products).value, i));
+    let (_, best) = overlaps.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let mut psi = place(best);
     for _ in 0..8 {
-        let curvature = bend(psi);
-        if curvature >= 0.0 {
+        let overlap = Overlap::at(psi, &products);
+        if overlap.bend >= 0.0 {
             break;
         }
-        psi -= (slope(psi) / curvature).clamp(-TAU / 360.0, TAU / 360.0);
+        psi -= (overlap.slope / overlap.bend).clamp(-TAU / 360.0, TAU / 360.0);
     }
     Some(psi / TAU)
 }
 
-fn sum(
-    products: &[(f64, f64)],
-    psi: f64,
-    term: impl Fn(f64, (f64, f64), (f64, f64)) -> f64,
-) -> f64 {
-    let terms = products
-        .iter()
-        .zip(1..)
-        .map(|(product, h)| term(f64::from(h), *product, (f64::from(h) * psi).sin_cos()));
-    terms.sum()
+/// Overlap of two headings whose cycles start ψ apart, with its derivatives by ψ.
+struct Overlap {
+    value: f64,
+    slope: f64,
+    bend: f64,
+}
+
+impl Overlap {
+    /// Sum over the harmonics, given the products of their coefficients (real and imaginary part).
+    fn at(psi: f64, products: &[(f64, f64); HARMONICS]) -> Self {
+        let (sin, cos) = psi.sin_cos();
+        let (mut c, mut s) = (1.0, 0.0);
+        let mut sum = Self {
+            value: 0.0,
+            slope: 0.0,
+            bend: 0.0,
+        };
+        for ((re, im), h) in products.iter().zip(1..) {
+            (c, s) = (c * cos - s * sin, s * cos + c * sin);
+            let (h, value) = (f64::from(h), re * c - im * s);
+            sum.value += value;
+            sum.slope -= h * (re * s + im * c);
+            sum.bend -= h * h * value;
+        }
+        sum
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_shifted_heading_is_found_where_it_was_moved_to() {
+        let model: Harmonics = [
+            [0.3, -0.1],
+            [0.2, 0.4],
+            [-0.3, 0.1],
+            [0.05, 0.2],
+            [0.1, -0.3],
+        ];
+        for i in 0..100 {
+            let by = f64::from(i) / 100.0 + 0.003;
+            let moved: Vec<[f64; 2]> = model
+                .iter()
+                .zip(1..)
+                .map(|([c, s], h)| {
+                    let (sin, cos) = (f64::from(h) * TAU * by).sin_cos();
+                    [c * cos - s * sin, s * cos + c * sin]
+                })
+                .collect();
+            let found = shift(&moved, &model).unwrap();
+            let off = found - by - (found - by).round();
+            assert!(off.abs() < 1e-12, "{by}: {found}");
+        }
+    }
 
     #[test]
     fn motion_that_begins_and_ends_unseen_is_found() {
