@@ -23,7 +23,9 @@ fn quietly<T>(work: impl FnOnce() -> Outcome<T>) -> Result<T, Error> {
         let message = with_places(&failure.to_string());
         match failure {
             Failure::BadInput(_) => Error::refused(message),
-            Failure::Tried(_) | Failure::AlreadyPrinted(_) => Error::unsuccessful(message),
+            Failure::Tried(_) | Failure::LinkLost(_) | Failure::AlreadyPrinted(_) => {
+                Error::unsuccessful(message)
+            }
         }
     })
 }

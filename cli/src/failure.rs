@@ -15,6 +15,9 @@ pub(crate) enum Failure {
     /// It was tried and did not work: no convergence, the robot refused, no answer. Exit status 1.
     #[error("{0}")]
     Tried(String),
+    /// The link to the robot was lost: the same may work once the robot replies again. Exit status 1.
+    #[error("{0}")]
+    LinkLost(String),
     /// It was tried and failed, and the printed output already says so: the reason goes to standard error alone. Exit status 1.
     #[error("{0}")]
     AlreadyPrinted(String),
@@ -43,7 +46,7 @@ impl Failure {
     /// The exit status that scripts see.
     pub(crate) fn status(&self) -> u8 {
         match self {
-            Self::Tried(_) | Self::AlreadyPrinted(_) => 1,
+            Self::Tried(_) | Self::LinkLost(_) | Self::AlreadyPrinted(_) => 1,
             Self::BadInput(_) => BAD_INPUT,
         }
     }

@@ -36,6 +36,7 @@ mod watch;
 use std::path::PathBuf;
 
 use host_link::LinkError;
+use link_protocol::StopCause;
 use pose_source::SourceName;
 use swimmer_files::GaitSpec;
 
@@ -312,6 +313,15 @@ impl From<LinkError> for Failure {
     fn from(error: LinkError) -> Self {
         match error {
             LinkError::OutOfRange { .. } => Self::bad_input(&error),
+            LinkError::Port { .. }
+            | LinkError::NoAnswer { .. }
+            | LinkError::Silent { .. }
+            | LinkError::SessionLost { .. }
+            | LinkError::NotConnected { .. }
+            | LinkError::StoppedEarly {
+                cause: StopCause::LinkLost,
+                ..
+            } => Self::LinkLost(Self::tried(&error).to_string()),
             _ => Self::tried(&error),
         }
     }

@@ -2,7 +2,7 @@
 //! built: every answer is what the twin's joints are seen to do, to a whole degree, as at a protractor.
 
 use std::io::{BufRead as _, BufReader, Write as _};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, Stdio};
 use std::sync::{Arc, Mutex};
 use std::thread::{self, sleep};
@@ -19,22 +19,39 @@ const AT_REST: Duration = Duration::from_millis(1_200);
 
 /// A twin, and what is seen of its joints.
 struct Twin {
-    process: Child,
+    folder: PathBuf,
+    servos: Vec<String>,
+    process: Mutex<Child>,
     /// Both angles, degrees, each time that they had come to rest.
     seen: Arc<Mutex<Vec<[f64; 2]>>>,
 }
 
 impl Twin {
     fn with(folder: &Path, servos: &[&str]) -> Self {
-        let words = [&["twin", "--pty", "robot", "--show-joints"], servos].concat();
+        let seen = Arc::new(Mutex::new(Vec::new()));
+        let servos: Vec<String> = servos.iter().map(|&word| word.to_owned()).collect();
+        let process = Mutex::new(Self::start(folder, &servos, &seen));
+        Self {
+            folder: folder.to_owned(),
+            servos,
+            process,
+            seen,
+        }
+    }
+
+    fn start(folder: &Path, servos: &[String], seen: &Arc<Mutex<Vec<[f64; 2]>>>) -> Child {
+        let servos = servos.iter().map(String::as_str);
+        let words: Vec<&str> = ["twin", "--pty", "robot", "--show-joints"]
+            .into_iter()
+            .chain(servos)
+            .collect();
         let mut process = command(folder, &words)
             .stdout(Stdio::piped())
             .spawn()
             .unwrap();
         let mut lines = BufReader::new(process.stdout.take().unwrap()).lines();
         assert!(lines.next().unwrap().unwrap().contains("runs at"));
-        let seen = Arc::new(Mutex::new(Vec::new()));
-        let sees = Arc::clone(&seen);
+        let sees = Arc::clone(seen);
         thread::spawn(move || {
             for line in lines.map_while(Result::ok) {
                 if let Some(angles) = angles(&line) {
@@ -42,7 +59,16 @@ impl Twin {
                 }
             }
         });
-        Self { process, seen }
+        process
+    }
+
+    /// Takes the pseudo-terminal away; a new robot with the same servos comes back under its name.
+    fn restart(&self) {
+        let mut process = self.process.lock().unwrap();
+        process.kill().unwrap();
+        process.wait().unwrap();
+        sleep(Duration::from_secs(2));
+        *process = Self::start(&self.folder, &self.servos, &self.seen);
     }
 
     /// Everything seen so far, once the joints are at rest.
@@ -60,8 +86,9 @@ impl Twin {
 
 impl Drop for Twin {
     fn drop(&mut self) {
-        let _ = self.process.kill();
-        let _ = self.process.wait();
+        let mut process = self.process.lock().unwrap();
+        let _ = process.kill();
+        let _ = process.wait();
     }
 }
 
@@ -84,6 +111,8 @@ struct Operator<'a> {
     ends: &'a str,
     /// The question at which the operator walks away.
     leaves_at: &'a str,
+    /// Questions at which the robot restarts, each once.
+    restarts: Vec<&'a str>,
 }
 
 impl Operator<'_> {
@@ -91,6 +120,13 @@ impl Operator<'_> {
     fn answer(&mut self, line: &str) -> Option<String> {
         if line.contains(self.leaves_at) {
             return Some("q".to_owned());
+        }
+        let restart = self.restarts.iter().position(|at| line.contains(at));
+        if let Some(index) = restart.filter(|_| is_asked(line)) {
+            self.restarts.remove(index);
+            self.twin.restart();
+            // The set-up asks again.
+            return None;
         }
         let last = |name: &str| {
             line.rfind(&format!("{name}:"))
@@ -155,8 +191,25 @@ impl Operator<'_> {
     }
 }
 
+/// The text ends with a question at which the robot may restart.
+fn is_asked(text: &str) -> bool {
+    text.ends_with("which angle does the joint show?")
+        || text.ends_with("[front, back, both, none]")
+}
+
 /// Runs the setup to its end; gives all that was said and answered.
 fn set_up(folder: &Path, twin: &Twin, more: &[&str], ends: &str, leaves_at: &str) -> (String, Ran) {
+    set_up_with_restarts(folder, twin, more, ends, leaves_at, Vec::new())
+}
+
+fn set_up_with_restarts(
+    folder: &Path,
+    twin: &Twin,
+    more: &[&str],
+    ends: &str,
+    leaves_at: &str,
+    restarts: Vec<&str>,
+) -> (String, Ran) {
     let words = [&["robot", "setup", "--port", "robot"], more].concat();
     let mut setup = command(folder, &words)
         .stdin(Stdio::piped())
@@ -170,6 +223,7 @@ fn set_up(folder: &Path, twin: &Twin, more: &[&str], ends: &str, leaves_at: &str
         looked: 0,
         ends,
         leaves_at,
+        restarts,
     };
     let (mut said, mut question) = (String::new(), String::new());
     for line in BufReader::new(setup.stdout.take().unwrap()).lines() {
@@ -257,6 +311,41 @@ fn a_mirrored_an_off_centre_and_two_sluggish_servos_are_found_and_set_up() {
         refused.stderr.contains("limit"),
         "an end stop is a limit: {refused}"
     );
+}
+
+/// The line is gone at two questions; the answers so far are kept.
+#[cfg(unix)]
+#[test]
+fn a_lost_link_is_waited_for_and_the_set_up_goes_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let odd = ["--servo", "back:centre=1512", "--dead-band", "8deg"];
+    let twin = Twin::with(folder, &odd);
+    let more = ["--swimmer", "robot", "--output", "ours.toml"];
+    let restarts = vec!["Which one turned", "back, 3 of 4"];
+    let (said, ran) = set_up_with_restarts(folder, &twin, &more, "60 60", "no such", restarts);
+    assert_eq!(ran.status, 0, "{said}{ran}");
+    assert_eq!(said.matches("The link was lost").count(), 2, "{said}");
+    // Each reading was taken once; the interrupted questions were asked twice.
+    let unwrapped = said.replace('\n', " ");
+    for (question, times) in [
+        ("front, 4 of 4", 1),
+        ("back, 2 of 4", 1),
+        ("back, 3 of 4", 2),
+    ] {
+        assert_eq!(
+            unwrapped.matches(question).count(),
+            times,
+            "{question}: {said}"
+        );
+    }
+    for (joint, centre) in [("front", 1500.0), ("back", 1512.0)] {
+        let servo = servo(folder, joint);
+        assert!(
+            (number(&servo, "centre_us") - centre).abs() < 0.7,
+            "{servo:#}"
+        );
+    }
 }
 
 #[test]

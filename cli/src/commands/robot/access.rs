@@ -432,6 +432,26 @@ impl RobotConnection {
         Ok(())
     }
 
+    /// Greets the robot again. If that fails, the port is opened again: its name may lead to another device by now.
+    ///
+    /// # Errors
+    /// [`Failure::LinkLost`] if the robot is still out of reach; others as the greeting.
+    pub(super) fn regain(&mut self, access: &Access) -> Outcome {
+        let Err(error) = self.robot.reconnect() else {
+            return Ok(());
+        };
+        let failure = Failure::from(error);
+        if !matches!(failure, Failure::LinkLost(_)) || self.is_fresh() {
+            return Err(failure);
+        }
+        let Ok(opened) = open(&self.name, &access.means(Pace::RealTime)?) else {
+            return Err(failure);
+        };
+        let port = traced(opened.port, self.recorder.as_ref(), &self.name);
+        self.robot.replace_port(port)?;
+        Ok(())
+    }
+
     /// Ctrl-C stops the robot from now on, whatever request is waited for.
     pub(super) fn stops_on(&mut self, interrupt: &Interrupt) {
         let halts = self.holder.halts();

@@ -9,6 +9,7 @@ mod measured;
 mod operator;
 mod output;
 mod readings;
+mod resuming;
 mod save;
 mod swing;
 #[cfg(test)]
@@ -25,6 +26,7 @@ use self::measured::{Measured, end_stops, measured_text};
 use self::operator::{Operator, degrees, takes_it};
 use self::output::Done;
 use self::readings::Readings;
+use self::resuming::Posture;
 use super::access::{Access, RobotConnection};
 use super::motion::MAY_JUMP;
 use super::outputs::state;
@@ -47,7 +49,8 @@ const JOINTS: [Joint; 2] = [Joint::Front, Joint::Back];
 /// Set up new servos at the bench, question by question: which is which, sign, centre, dead band, end stops
 ///
 /// Needs a protractor. The answers come from the standard input, so that a script may give them; q or Ctrl-C leaves, with the
-/// robot stopped and everything as it was. At the end the robot has stored its maps, and a swimmer file its `[servo]`.
+/// robot stopped and everything as it was. If the link stalls or the port goes away, the set-up waits for the robot, and goes on at
+/// the same question with the answers so far. At the end the robot has stored its maps, and a swimmer file its `[servo]`.
 #[derive(Debug, clap::Args)]
 pub(super) struct Setup {
     /// A preset that `swimmer swimmers` lists, or a swimmer file with the links' lengths; left out, the set-up prompts
@@ -86,12 +89,7 @@ pub(super) fn run(access: &Access, arguments: &Setup, output: Output) -> Outcome
         line.robot.servo(Joint::Front)?,
         line.robot.servo(Joint::Back)?,
     ];
-    let mut bench = Bench {
-        line: &mut line,
-        operator: &operator,
-        interrupt: &interrupt,
-        before,
-    };
+    let mut bench = Bench::new(access, &mut line, &operator, &interrupt, before);
     let done = match bench.everything(arguments, named) {
         Ok(done) => done,
         Err(failure) => {
@@ -105,11 +103,15 @@ pub(super) fn run(access: &Access, arguments: &Setup, output: Output) -> Outcome
 
 /// Robot and operator during a set-up.
 struct Bench<'a> {
+    access: &'a Access,
     line: &'a mut RobotConnection,
     operator: &'a Operator,
     interrupt: &'a Interrupt,
     /// Servo maps before the set-up; restored if it is left early.
     before: [ServoSettings; 2],
+    /// New maps may be on the robot.
+    may_be_changed: bool,
+    posture: Posture,
 }
 
 impl Bench<'_> {
@@ -118,9 +120,7 @@ impl Bench<'_> {
             "Setting up both servos. Each answer ends with Enter; q or Ctrl-C leaves: then the robot is stopped and as it was.\n\
              1. Which servo is which",
         );
-        self.operator.confirm(
-            self.line,
-            false,
+        self.confirm(
             "Take the horns off both servos, or the links off their horns, so that a turning servo hits nothing. Are they off?",
         )?;
         self.power()?;
@@ -128,9 +128,7 @@ impl Bench<'_> {
             self.which_is(joint)?;
         }
         self.operator.tell("2. Horns");
-        self.operator.confirm(
-            self.line,
-            true,
+        self.confirm(
             "Both servos stand at their centres now. Put the horns on so that the links are as straight as the teeth allow (a few degrees off are found below), and screw them on. Are both on?",
         )?;
         self.operator.tell(
@@ -150,47 +148,54 @@ impl Bench<'_> {
 
     /// Turns the pulses on, with both trims at zero.
     fn power(&mut self) -> Outcome {
-        for joint in JOINTS {
-            self.line.robot.trim(joint, 0.0)?;
-        }
         self.operator.tell(MAY_JUMP);
-        self.line.robot.arm(false)?;
-        self.operator.wait(self.line, true, TO_TURN)
+        self.posture = Posture::Off;
+        let mut is_repeated = false;
+        self.resuming(|bench| {
+            if std::mem::replace(&mut is_repeated, true) {
+                let question = "Both servos go to their centres. Is the way free?";
+                bench.operator.confirm(bench.line, false, question)?;
+            }
+            bench.power_once()
+        })?;
+        self.posture = Posture::Powered(Vec::new());
+        Ok(())
     }
 
     /// Turns the pulses off.
     fn rest(&mut self) -> Outcome {
-        self.line.robot.stop()?;
-        wait_for_rest(&mut self.line.robot)?;
-        Ok(())
+        self.posture = Posture::Off;
+        self.resuming(|bench| {
+            bench.line.robot.stop()?;
+            wait_for_rest(&mut bench.line.robot)?;
+            Ok(())
+        })
     }
 
     /// Turns a joint to an angle by its present map.
     fn turn(&mut self, joint: Joint, angle: f64) -> Outcome {
-        self.line.robot.trim(joint, angle)?;
-        self.operator.wait(self.line, true, TO_TURN)
+        self.resuming(|bench| bench.turn_once(joint, angle))?;
+        self.posture.turned(joint, angle);
+        Ok(())
     }
 
     /// Checks that the commanded servo is the one that turns; otherwise has the plugs exchanged.
     fn which_is(&mut self, joint: Joint) -> Outcome {
         let name = name_of(joint);
         loop {
-            self.operator.confirm(
-                self.line,
-                true,
-                &format!("The {name} servo turns by 25° and back. Watch both. Ready?"),
-            )?;
+            self.confirm(&format!(
+                "The {name} servo turns by 25° and back. Watch both. Ready?"
+            ))?;
             self.turn(joint, SWING)?;
             self.turn(joint, 0.0)?;
-            let turned = self.operator.ask(
-                self.line,
-                true,
-                "Which one turned? [front, back, both, none]",
-                |answer| match answer {
-                    "front" | "back" | "both" | "none" => Ok(answer.to_owned()),
-                    _ => Err("Answer front, back, both or none.".to_owned()),
-                },
-            )?;
+            let turned =
+                self.ask(
+                    "Which one turned? [front, back, both, none]",
+                    |answer| match answer {
+                        "front" | "back" | "both" | "none" => Ok(answer.to_owned()),
+                        _ => Err("Answer front, back, both or none.".to_owned()),
+                    },
+                )?;
             if turned == name {
                 return Ok(());
             }
@@ -206,11 +211,7 @@ impl Bench<'_> {
                     "the plugs are changed over: exchange the signal wires of D4 (front) and D5 (back), on a Pico GP16 and GP17"
                 }
             };
-            self.operator.confirm(
-                self.line,
-                false,
-                &format!("The pulses are off: {remedy}. Is that done?"),
-            )?;
+            self.confirm(&format!("The pulses are off: {remedy}. Is that done?"))?;
             self.power()?;
         }
     }
@@ -226,7 +227,7 @@ impl Bench<'_> {
             let mut read = |number: u8, angle: f64| -> Outcome<f64> {
                 self.turn(joint, angle)?;
                 let question = format!("{name}, {number} of 4: which angle does the joint show?");
-                self.operator.ask(self.line, true, &question, degrees)
+                self.ask(&question, degrees)
             };
             let readings = Readings {
                 low: read(1, -SWING)?,
@@ -244,9 +245,7 @@ impl Bench<'_> {
         let settings = found.settings(&before);
         self.operator.tell(&measured_text(name, &found, &settings));
         let measured = quantity::angle(found.dead_band);
-        let dead_band = self.operator.ask(
-            self.line,
-            true,
+        let dead_band = self.ask(
             &format!("{name}: dead band ±{measured}. Enter takes it; or type another half width, in degrees"),
             |answer| match answer {
                 answer if takes_it(answer) => Ok(found.dead_band),
@@ -258,9 +257,7 @@ impl Bench<'_> {
             },
         )?;
         let most = f64::from(self.line.robot.info().limits.max_angle);
-        let ends = self.operator.ask(
-            self.line,
-            true,
+        let ends = self.ask(
             &format!(
                 "{name}: how far may the joint turn before anything touches? Degrees to its left and to its right, as 90 75; Enter: {} to both",
                 quantity::angle(most)

@@ -4,6 +4,7 @@
 //! Nothing moves after an answer that is not understood: a confirmation accepts Enter or y alone, and repeats the question
 //! otherwise.
 
+use std::cell::RefCell;
 use std::io::{self, BufRead as _, IsTerminal as _};
 use std::str::FromStr;
 use std::sync::mpsc;
@@ -11,8 +12,8 @@ use std::thread;
 use std::time::Duration;
 
 use crossterm::terminal;
-use host_link::robot::await_play::at_rest;
 use host_link::session::cause_in_words;
+use link_protocol::{StateName, StopCause};
 use textwrap::WordSplitter;
 
 use super::super::access::{BEAT, RobotConnection};
@@ -20,12 +21,62 @@ use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
 use crate::output::Output;
 
+/// Reason of a set-up that the operator left.
+pub(super) const LEFT: &str = "left the setup";
 /// Longest line of text, in columns.
 const WIDEST: usize = 80;
 
+/// Returns the answer to a question, once it is known.
+#[cfg(test)]
+type Person = Box<dyn FnMut(&str) -> Option<String>>;
+
+/// Source of the answers.
+enum Answers {
+    /// Lines of the standard input, or of a script.
+    Lines {
+        lines: mpsc::Receiver<String>,
+        /// Line that was read too early.
+        kept: RefCell<Option<String>>,
+    },
+    /// An operator of a test, who reads the question, thinks, and answers.
+    #[cfg(test)]
+    Person(RefCell<Person>),
+}
+
+impl Answers {
+    fn lines(lines: mpsc::Receiver<String>) -> Self {
+        let kept = RefCell::default();
+        Self::Lines { lines, kept }
+    }
+
+    /// The next line, if there is one.
+    #[cfg_attr(not(test), allow(unused_variables))]
+    fn next(&self, question: &str) -> Result<String, mpsc::TryRecvError> {
+        match self {
+            Self::Lines { lines, kept } => match kept.take() {
+                Some(line) => Ok(line),
+                None => lines.try_recv(),
+            },
+            #[cfg(test)]
+            Self::Person(person) => {
+                (person.borrow_mut())(question).ok_or(mpsc::TryRecvError::Empty)
+            }
+        }
+    }
+
+    /// Keeps a line for the next question.
+    fn keep(&self, line: String) {
+        match self {
+            Self::Lines { kept, .. } => *kept.borrow_mut() = Some(line),
+            #[cfg(test)]
+            Self::Person(_) => {}
+        }
+    }
+}
+
 /// Operator at the bench, who watches the robot and answers questions.
 pub(super) struct Operator {
-    answers: mpsc::Receiver<String>,
+    answers: Answers,
     interrupt: Interrupt,
     output: Output,
     /// The answers come from a script: they are printed, as a terminal shows typed ones.
@@ -45,7 +96,7 @@ impl Operator {
             }
         });
         Self {
-            answers,
+            answers: Answers::lines(answers),
             interrupt,
             output,
             scripted: !io::stdin().is_terminal(),
@@ -60,7 +111,21 @@ impl Operator {
             sender.send((*answer).to_owned()).unwrap();
         }
         Self {
-            answers: receiver,
+            answers: Answers::lines(receiver),
+            interrupt: Interrupt::default(),
+            output,
+            scripted: true,
+        }
+    }
+
+    /// Asks this person, who returns `None` until there is an answer.
+    #[cfg(test)]
+    pub(super) fn with_person(
+        person: impl FnMut(&str) -> Option<String> + 'static,
+        output: Output,
+    ) -> Self {
+        Self {
+            answers: Answers::Person(RefCell::new(Box::new(person))),
             interrupt: Interrupt::default(),
             output,
             scripted: true,
@@ -85,7 +150,7 @@ impl Operator {
     ) -> Outcome<T> {
         if !self.scripted {
             // Lines typed before the question was printed do not answer it.
-            while self.answers.try_recv().is_ok() {}
+            while self.answers.next("").is_ok() {}
         }
         self.tell(question);
         loop {
@@ -93,8 +158,8 @@ impl Operator {
             if self.scripted {
                 self.tell(&format!("> {answer}"));
             }
-            if matches!(answer.as_str(), "q" | "quit") {
-                return Err(Failure::Tried("left the setup".to_owned()));
+            if is_leave(&answer) {
+                return Err(Failure::Tried(LEFT.to_owned()));
             }
             match read(&answer) {
                 Ok(value) => return Ok(value),
@@ -155,7 +220,7 @@ impl Operator {
 
     fn answer(&self, line: &mut RobotConnection, armed: bool, question: &str) -> Outcome<String> {
         loop {
-            match self.answers.try_recv() {
+            match self.answers.next(question) {
                 Ok(answer) => return Ok(answer.trim().to_owned()),
                 Err(mpsc::TryRecvError::Empty) => self.beat(line, armed)?,
                 Err(mpsc::TryRecvError::Disconnected) => {
@@ -173,14 +238,46 @@ impl Operator {
             )));
         }
         let news = line.beat()?;
-        match news.filter(|telemetry| armed && at_rest(telemetry.state, telemetry.cause)) {
-            Some(telemetry) => Err(Failure::Tried(format!(
-                "the robot stopped: {}",
-                cause_in_words(telemetry.cause)
-            ))),
+        match news.filter(|telemetry| armed && has_stopped(telemetry.state)) {
+            Some(telemetry) => {
+                let text = format!("the robot stopped: {}", cause_in_words(telemetry.cause));
+                Err(match telemetry.cause {
+                    StopCause::LinkLost => Failure::LinkLost(text),
+                    _ => Failure::Tried(text),
+                })
+            }
             None => Ok(()),
         }
     }
+
+    /// Returns `true` if the operator leaves: by Ctrl-C, by q, or at the end of the answers. Other lines that are typed are dropped,
+    /// since no question waits for one; those of a script are answers to the questions that follow.
+    pub(super) fn leaves(&self) -> bool {
+        loop {
+            match self.answers.next("") {
+                Ok(answer) if is_leave(answer.trim()) => return true,
+                Ok(answer) if self.scripted => {
+                    self.answers.keep(answer);
+                    return self.interrupt.requested();
+                }
+                Ok(_) => {}
+                Err(mpsc::TryRecvError::Empty) => return self.interrupt.requested(),
+                Err(mpsc::TryRecvError::Disconnected) => return true,
+            }
+        }
+    }
+}
+
+/// Returns `true` if the pulses are off or about to go off. A robot that holds may still give the end of an earlier play as its cause.
+fn has_stopped(state: StateName) -> bool {
+    matches!(
+        state,
+        StateName::Stopped | StateName::EStopped | StateName::Stopping | StateName::Settling
+    )
+}
+
+fn is_leave(answer: &str) -> bool {
+    matches!(answer, "q" | "quit")
 }
 
 /// Columns of the terminal, at most [`WIDEST`].

@@ -29,7 +29,7 @@ impl Bench<'_> {
         if let Some(file) = named {
             return Ok(file);
         }
-        let present = self.line.robot.configuration()?;
+        let present = self.resuming(|bench| Ok(bench.line.robot.configuration()?))?;
         let (name, swimmer) = configured(&present);
         let lengths = [
             swimmer.links.front,
@@ -48,11 +48,10 @@ impl Bench<'_> {
             servo: None,
             passive: None,
         };
-        self.operator
-            .ask(self.line, false, &question, |answer| match answer {
-                answer if takes_it(answer) => Ok(standard.clone()),
-                path => SwimmerFile::find(path).map_err(|error| error.to_string()),
-            })
+        self.ask(&question, |answer| match answer {
+            answer if takes_it(answer) => Ok(standard.clone()),
+            path => SwimmerFile::find(path).map_err(|error| error.to_string()),
+        })
     }
 
     /// Everything onto the robot; gives the file that says the same.
@@ -61,6 +60,12 @@ impl Bench<'_> {
         swimmer: &SwimmerFile,
         joints: [&Measured; 2],
     ) -> Outcome<SwimmerFile> {
+        // A repetition sets the same values.
+        self.may_be_changed = true;
+        self.resuming(|bench| bench.save_once(swimmer, joints))
+    }
+
+    fn save_once(&mut self, swimmer: &SwimmerFile, joints: [&Measured; 2]) -> Outcome<SwimmerFile> {
         let robot = &mut self.line.robot;
         let present = robot.configuration()?;
         let limits = robot.info().limits;
@@ -102,14 +107,14 @@ impl Bench<'_> {
         let band = quantity::angle(front.dead_band.max(back.dead_band));
         let question =
             format!("Are both links straight, as nearly as a dead band of ±{band} lets them?");
-        if !self.operator.yes(self.line, true, &question, true)? {
+        if !self.yes(&question, true)? {
             return Err(Failure::Tried(
                 "with the saved settings the links are not straight: did a horn slip, or was an angle read with the wrong sign? Run `swimmer robot setup` again"
                     .to_owned(),
             ));
         }
         let question = "Swing each joint once, slowly, to its ends, to see that nothing touches? (The gait that the robot holds is replaced by that swing.)";
-        if self.operator.yes(self.line, true, question, false)? {
+        if self.yes(question, false)? {
             self.swing(Joint::Front, front.ends)?;
             self.power()?;
             self.swing(Joint::Back, back.ends)?;
@@ -124,15 +129,16 @@ impl Bench<'_> {
         file: SwimmerFile,
         joints: [Measured; 2],
     ) -> Outcome<Done> {
-        let set = [
-            Set::read(&mut self.line.robot, Joint::Front)?,
-            Set::read(&mut self.line.robot, Joint::Back)?,
-        ];
+        let set = self.resuming(|bench| {
+            let robot = &mut bench.line.robot;
+            Ok([
+                Set::read(robot, Joint::Front)?,
+                Set::read(robot, Joint::Back)?,
+            ])
+        })?;
         let place = match &arguments.output {
             Some(place) => Some(place.clone()),
-            None => self.operator.ask(
-                self.line,
-                false,
+            None => self.ask(
                 "Write a swimmer file with these servos? Type its name, as ours.toml; Enter or n: none",
                 file_name,
             )?,

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 
 use gait_player::GaitTable;
-use link_protocol::Joint;
+use link_protocol::{Joint, StopCause};
 
 use super::{Bench, name_of};
 use crate::failure::{Failure, Outcome};
@@ -36,32 +36,38 @@ impl Bench<'_> {
         .map_err(|error| Failure::tried(&error))?;
         let seconds = std::f64::consts::TAU * left.max(-right) / CALMLY;
         let name = name_of(joint);
-        self.operator.confirm(
-            self.line,
-            true,
-            &format!(
-                "{name}: to {} and to {} within {seconds:.0} s. Ctrl-C stops it where it touches. Is the way free?",
-                quantity::angle(left),
-                quantity::angle(right)
-            ),
-        )?;
-        let interrupt = self.interrupt;
-        let go_on = || {
-            if interrupt.requested() {
-                ControlFlow::Break(())
-            } else {
-                ControlFlow::Continue(())
+        let question = format!(
+            "{name}: to {} and to {} within {seconds:.0} s. Ctrl-C stops it where it touches. Is the way free?",
+            quantity::angle(left),
+            quantity::angle(right)
+        );
+        self.resuming(|bench| {
+            bench.operator.confirm(bench.line, true, &question)?;
+            let interrupt = bench.interrupt;
+            let go_on = || {
+                if interrupt.requested() {
+                    ControlFlow::Break(())
+                } else {
+                    ControlFlow::Continue(())
+                }
+            };
+            let robot = &mut bench.line.robot;
+            robot.upload(table.bytes(), PATIENCE, |_| go_on())?;
+            if let Err(error) = robot.play(1, Duration::from_secs_f64(seconds), false) {
+                // A robot that has stopped without the link refuses to play once the link is back.
+                let status = robot.status()?;
+                let failure = Failure::from(error);
+                return Err(match status.cause {
+                    StopCause::LinkLost => Failure::LinkLost(failure.to_string()),
+                    _ => failure,
+                });
             }
-        };
-        let robot = &mut self.line.robot;
-        robot.upload(table.bytes(), PATIENCE, |_| go_on())?;
-        robot.play(1, Duration::from_secs_f64(seconds), false)?;
-        robot.wait_until_finished(|_| go_on())?;
+            robot.wait_until_finished(|_| go_on())?;
+            Ok(())
+        })?;
         // The end of a play is a stop.
         self.rest()?;
-        if !self.operator.yes(
-            self.line,
-            false,
+        if !self.yes(
             &format!("{name}: did it turn all the way without touching anything?"),
             true,
         )? {

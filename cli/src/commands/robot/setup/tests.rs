@@ -1,6 +1,12 @@
 //! Every prompt of a set-up against y, n, text that is no answer, and the end of input; on a twin in virtual time.
 
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::io;
+use std::rc::Rc;
+
 use clap::Parser as _;
+use host_link::Port;
 use link_protocol::StateName;
 
 use super::*;
@@ -90,12 +96,7 @@ fn set_up(answers: &[&str]) -> Left {
             .unwrap();
         let before = JOINTS.map(|joint| line.robot.servo(joint).unwrap());
         let interrupt = Interrupt::default();
-        let mut bench = Bench {
-            line: &mut line,
-            operator: &operator,
-            interrupt: &interrupt,
-            before,
-        };
+        let mut bench = Bench::new(&words.access, &mut line, &operator, &interrupt, before);
         let done = bench.everything(&words.setup, None);
         let failure = done.err().map(|failure| failure.to_string());
         if failure.is_some() {
@@ -181,4 +182,173 @@ fn every_printed_line_fits_a_terminal() {
     for line in left.printed.lines() {
         assert!(line.chars().count() <= 80, "{line}");
     }
+}
+
+/// A port over which nothing passes from `from` to `to`, in either direction.
+struct Stalling<P> {
+    port: P,
+    from: Duration,
+    to: Duration,
+}
+
+impl<P: Port> Stalling<P> {
+    fn is_stalled(&self) -> bool {
+        (self.from..self.to).contains(&self.port.now())
+    }
+}
+
+impl<P: Port> Port for Stalling<P> {
+    fn read(&mut self, buf: &mut [u8], timeout: Duration) -> io::Result<usize> {
+        let was_stalled = self.is_stalled();
+        let count = self.port.read(buf, timeout)?;
+        Ok(if was_stalled || self.is_stalled() {
+            0
+        } else {
+            count
+        })
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
+        if self.is_stalled() {
+            return Ok(());
+        }
+        self.port.write(bytes)
+    }
+
+    fn now(&self) -> Duration {
+        self.port.now()
+    }
+}
+
+/// Takes no byte and has none, for the moment in which a port is wrapped.
+struct NoPort;
+
+impl Port for NoPort {
+    fn read(&mut self, _: &mut [u8], _: Duration) -> io::Result<usize> {
+        Ok(0)
+    }
+
+    fn write(&mut self, _: &[u8]) -> io::Result<()> {
+        Ok(())
+    }
+
+    fn now(&self) -> Duration {
+        Duration::ZERO
+    }
+}
+
+/// Calls of a person for the same question before the answer: half a second of beats.
+const THINKS: u32 = 25;
+
+/// Answers by the words of a question, after a while; counts the answers.
+fn person(
+    answered: &Rc<RefCell<BTreeMap<String, u32>>>,
+) -> impl FnMut(&str) -> Option<String> + use<> {
+    let answered = Rc::clone(answered);
+    let (mut thinking, mut turning) = (0, "front");
+    move |question| {
+        thinking = (thinking + 1) % THINKS;
+        if thinking > 0 || question.is_empty() {
+            return None;
+        }
+        *answered
+            .borrow_mut()
+            .entry(question.to_owned())
+            .or_default() += 1;
+        for joint in ["front", "back"] {
+            if question.starts_with(&format!("The {joint} servo turns")) {
+                turning = joint;
+            }
+        }
+        let known = PROMPTS
+            .iter()
+            .rev()
+            .find(|prompt| question.starts_with(prompt.0));
+        Some(
+            match known {
+                Some(Prompt("Which one turned?", ..)) => turning,
+                Some(prompt) => prompt.1,
+                None => "",
+            }
+            .to_owned(),
+        )
+    }
+}
+
+/// Result of a set-up whose link stalls.
+struct Stalled {
+    done: Option<String>,
+    printed: String,
+    answered: BTreeMap<String, u32>,
+    maps: [ServoSettings; 2],
+    /// At the end, on the port's clock.
+    now: Duration,
+}
+
+/// Sets a twin up while its link stalls for three seconds from `from` on.
+fn set_up_with_stall(from: Duration) -> Stalled {
+    let words = Words::parse_from(["setup", "--port", "twin"]);
+    let output = Output { json: false };
+    let answered = Rc::default();
+    let ((done, maps, now), printed) = capture(|| {
+        let operator = Operator::with_person(person(&answered), output);
+        let mut line = words
+            .access
+            .connect("swimmer robot setup", Pace::AsFastAsPossible)
+            .unwrap();
+        let before = JOINTS.map(|joint| line.robot.servo(joint).unwrap());
+        let port = std::mem::replace(line.robot.port_mut(), Box::new(NoPort));
+        let to = from.saturating_add(Duration::from_secs(3));
+        *line.robot.port_mut() = Box::new(Stalling { port, from, to });
+        let interrupt = Interrupt::default();
+        let mut bench = Bench::new(&words.access, &mut line, &operator, &interrupt, before);
+        let done = bench.everything(&words.setup, None);
+        let done = done.map(|done| done.to_string());
+        let maps = JOINTS.map(|joint| line.robot.servo(joint).unwrap());
+        let status = line.robot.status().unwrap();
+        assert_eq!(status.state, StateName::Stopped);
+        (
+            done.map_err(|failure| failure.to_string()),
+            maps,
+            line.robot.port().now(),
+        )
+    });
+    assert!(
+        done.is_ok(),
+        "{done:?} after a stall at {from:?}: {}",
+        printed.document
+    );
+    Stalled {
+        done: done.ok(),
+        printed: printed.document,
+        answered: answered.take(),
+        maps,
+        now,
+    }
+}
+
+/// A stall at any time: the set-up goes on with the answers so far, and comes to the same maps. Only consent to a motion that was
+/// interrupted is given twice.
+#[test]
+fn a_link_that_stalls_is_waited_for_and_no_answer_is_lost() {
+    let smooth = set_up_with_stall(Duration::MAX);
+    assert!(!smooth.printed.contains("The link was lost"));
+    let (mut start, mut lost) = (Duration::from_millis(700), 0);
+    while start < smooth.now {
+        let stalled = set_up_with_stall(start);
+        assert_eq!(stalled.done, smooth.done, "a stall at {start:?}");
+        assert_eq!(stalled.maps, smooth.maps, "a stall at {start:?}");
+        for (question, count) in &smooth.answered {
+            let again = stalled.answered.get(question).copied().unwrap_or(0);
+            // A motion that was interrupted is repeated only after another consent.
+            let is_consent = question.contains("Is the way free?");
+            assert!(
+                again == *count || is_consent && again == count + 1,
+                "`{question}` was answered {again} times instead of {count} with a stall at {start:?}"
+            );
+        }
+        lost += u32::from(stalled.printed.contains("The link was lost"));
+        start += Duration::from_millis(1_700);
+    }
+    assert!(lost > 10, "{lost} stalls were seen");
 }
