@@ -180,16 +180,26 @@ impl Course {
         pose: &Pose<f64>,
         time_s: f64,
     ) -> f64 {
-        let swimmer = model.swimmer();
-        let free = |point: Vector2<f64>, radius: f64| {
-            let along = 0.5 * tank.length - point.x.abs();
-            along.min(0.5 * tank.width - point.y.abs()) - radius
-        };
-        let outline = swimmer.links.outline(&self.shape_at(time_s));
-        let links = outline.map(|end| free(pose.transform(&end), 0.0));
-        let sphere = free(pose.position(), swimmer.sphere_radius);
-        links.into_iter().fold(sphere, f64::min)
+        distance_to_wall(model, tank, pose, &self.shape_at(time_s))
     }
+}
+
+/// Smallest distance \[m\] of any part of a body of these joint angles to a wall, with the middle link at `pose` in the tank's frame.
+pub(crate) fn distance_to_wall(
+    model: &Model<f64>,
+    tank: &Tank,
+    pose: &Pose<f64>,
+    shape: &Vector2<f64>,
+) -> f64 {
+    let swimmer = model.swimmer();
+    let free = |point: Vector2<f64>, radius: f64| {
+        let along = 0.5 * tank.length - point.x.abs();
+        along.min(0.5 * tank.width - point.y.abs()) - radius
+    };
+    let outline = swimmer.links.outline(shape);
+    let links = outline.map(|end| free(pose.transform(&end), 0.0));
+    let sphere = free(pose.position(), swimmer.sphere_radius);
+    links.into_iter().fold(sphere, f64::min)
 }
 
 /// The pose after the joints have moved on a straight line: midpoint steps on SE(2).

@@ -51,4 +51,4 @@ pub use monitor::{
     CycleReport, Departure, Evaluated, Evaluation, Likeness, MeasuredMotion, Monitor,
 };
 pub use pose::Pose;
-pub use tracked_play::{GaitOnRobot, TankWalls, TrackedPlay};
+pub use tracked_play::{GaitOnRobot, NearWalls, TankWalls, TrackedPlay};

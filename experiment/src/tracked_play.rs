@@ -3,8 +3,10 @@
 use std::collections::VecDeque;
 
 use forecast::Tank;
+use nalgebra::Vector2;
 use swimmer_model::Model;
 
+use crate::course::distance_to_wall;
 use crate::monitor::{Departure, MeasuredMotion};
 use crate::{Course, CycleReport, Evaluated, Evaluation, Monitor, Pose};
 
@@ -31,6 +33,29 @@ pub struct TankWalls {
     pub margin_m: f64,
 }
 
+impl TankWalls {
+    /// Returns `true` if a part of a swimmer with these joint angles is nearer to a wall than the margin.
+    pub fn are_near(&self, model: &Model<f64>, pose: &Pose, shape: &Vector2<f64>) -> bool {
+        distance_to_wall(model, &self.tank, &pose.placed(), shape) < self.margin_m
+    }
+}
+
+/// Poses near the walls, counted in a row.
+#[derive(Debug, Clone, Default)]
+pub struct NearWalls(u32);
+
+impl NearWalls {
+    /// Takes a pose.
+    pub fn pose(&mut self, is_near: bool) {
+        self.0 = if is_near { self.0 + 1 } else { 0 };
+    }
+
+    /// Returns `true` after so many poses in a row that they are not an error of the cameras.
+    pub fn are_confirmed(&self) -> bool {
+        self.0 >= POSES_OUTSIDE
+    }
+}
+
 /// Play under way.
 #[derive(Debug)]
 pub struct TrackedPlay {
@@ -40,7 +65,7 @@ pub struct TrackedPlay {
     gait: GaitOnRobot,
     began_s: f64,
     cycles: u32,
-    outside: u32,
+    outside: NearWalls,
     last_seen_s: Option<f64>,
     /// Cycles that have ended.
     ended: u32,
@@ -70,7 +95,7 @@ impl TrackedPlay {
             gait,
             began_s,
             cycles,
-            outside: 0,
+            outside: NearWalls::default(),
             last_seen_s: None,
             ended: 0,
             evaluations: VecDeque::new(),
@@ -89,13 +114,12 @@ impl TrackedPlay {
         let last_s = self.last_seen_s.unwrap_or(f64::NEG_INFINITY);
         self.last_seen_s = Some(pose.time_s.max(last_s));
         let time = (pose.time_s - self.began_s).rem_euclid(self.gait.period_s);
+        let shape = self.gait.course.shape_at(time);
         let is_outside = pose.time_s > self.began_s
-            && self.walls.is_some_and(|walls| {
-                let course = &self.gait.course;
-                let placed = pose.placed();
-                course.distance_to_wall(&self.model, &walls.tank, &placed, time) < walls.margin_m
-            });
-        self.outside = if is_outside { self.outside + 1 } else { 0 };
+            && self
+                .walls
+                .is_some_and(|walls| walls.are_near(&self.model, pose, &shape));
+        self.outside.pose(is_outside);
     }
 
     /// The robot came to rest: the cycles that are left have ended.
@@ -126,7 +150,7 @@ impl TrackedPlay {
 
     /// Returns `true` if the robot is nearer to a wall than the margin.
     pub fn is_outside(&self) -> bool {
-        self.outside >= POSES_OUTSIDE
+        self.outside.are_confirmed()
     }
 
     /// Returns `true` if all cycles are evaluated.

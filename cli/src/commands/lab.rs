@@ -21,7 +21,7 @@ use self::callers::{Caller, Callers};
 use self::gate::{Gate, Token};
 pub(crate) use self::page::{beside, own};
 use self::visitor::Server;
-use crate::commands::robot::SharedPortOptions;
+use crate::commands::robot::{CamerasOverLink, LinkMonitorOptions, SharedPortOptions};
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
 use crate::new_file::may_be_written;
@@ -55,6 +55,8 @@ pub(crate) struct Lab {
     no_browser: bool,
     #[command(flatten)]
     port: SharedPortOptions,
+    #[command(flatten)]
+    monitor: LinkMonitorOptions,
 }
 
 #[derive(Debug, Serialize)]
@@ -101,7 +103,9 @@ impl Lab {
         }
         let interrupt = Interrupt::install_with_a_robot()?;
         let listener = listen(&self.listen)?;
-        let mut port = self.port.open("swimmer lab")?;
+        let cameras = self.monitor.cameras(self.port.is_fresh())?;
+        let mut port = self.port.open("swimmer lab", cameras.as_ref())?;
+        let monitor = cameras.map(CamerasOverLink::start).transpose()?;
         let gate = Gate {
             token: Token::new()?,
             name: host_name(&self.listen),
@@ -124,7 +128,7 @@ impl Lab {
                 ))
             })?;
         match &mut port {
-            Some(port) => hub::run(port, &inbox, || !interrupt.requested()),
+            Some(port) => hub::run(port, &inbox, monitor.as_ref(), || !interrupt.requested()),
             None => {
                 while !interrupt.requested() {
                     thread::sleep(LOOK);

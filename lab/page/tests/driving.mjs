@@ -36,8 +36,8 @@ class Process {
 
 /** The server of the page, with a robot. */
 export class Lab extends Process {
-  static start(port) {
-    return super.start("lab", "--port", port, "--page", FILE, "--no-browser");
+  static start(port, ...more) {
+    return super.start("lab", "--port", port, "--page", FILE, "--no-browser", ...more);
   }
 
   get address() {
@@ -91,6 +91,21 @@ export class Driver extends Tab {
 
   says(words) {
     return this.until((words) => document.querySelector("#panel-drive").textContent.includes(words), words, `"${words}"`);
+  }
+
+  /** Sets period, s, and cycles of the next play, once the robot has replied. */
+  async timing(period, cycles) {
+    await this.until(() => document.querySelector("#panel-drive #cycles") !== null, undefined, "the fields of a play");
+    await this.evaluate(
+      ([period, cycles]) => {
+        for (const [selector, value] of [['input[type="number"][step="0.1"]', period], ["#cycles", cycles]]) {
+          const input = document.querySelector(`#panel-drive ${selector}`);
+          input.value = value;
+          input.dispatchEvent(new Event("change", { bubbles: true }));
+        }
+      },
+      [period, cycles],
+    );
   }
 
   /** Uploads Explore's gait and plays it until told otherwise. */

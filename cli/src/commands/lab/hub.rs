@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use host_link::robot::Halt;
 use serde::{Deserialize, Serialize};
 
-use crate::commands::robot::{PortEvent, SharedPort};
+use crate::commands::robot::{LinkMonitor, MonitorLine, MonitorReport, PortEvent, SharedPort};
 
 /// Longest wait for bytes of the robot in one turn, and so the longest delay of a stop from a page.
 const TURN: Duration = Duration::from_millis(2);
@@ -96,6 +96,16 @@ pub(super) enum ServerMessage {
     },
     /// Another page has requested a stop.
     Stopped,
+    /// Pose of the middle link by the cameras.
+    Tracked {
+        /// x and y in the tank \[m\], heading \[rad\]; `null` while the robot is not seen.
+        pose: Option<[f64; 3]>,
+    },
+    /// Comparison of the play with its prediction.
+    Monitor {
+        /// All lines about the present play, or the last one.
+        lines: Vec<MonitorLine>,
+    },
 }
 
 /// Sending ends of the hub's inboxes.
@@ -171,27 +181,55 @@ struct Pages {
     driver: Option<PageId>,
     /// The driver, for threads that send frames; 0 without a driver.
     shared: Arc<AtomicU64>,
+    /// The cameras' last pose and lines, for a page that comes later.
+    tracked: Option<[ServerMessage; 2]>,
 }
 
 /// Runs until `go_on` returns false, or until no page can connect any more. Then the robot is stopped if a page drove it.
-pub(super) fn run(port: &mut SharedPort, inbox: &Inbox, go_on: impl Fn() -> bool) {
+/// `monitor` follows the traffic.
+pub(super) fn run(
+    port: &mut SharedPort,
+    inbox: &Inbox,
+    monitor: Option<&LinkMonitor>,
+    go_on: impl Fn() -> bool,
+) {
+    let tracked = monitor.map(|_| {
+        let lines = Vec::new();
+        [
+            ServerMessage::Tracked { pose: None },
+            ServerMessage::Monitor { lines },
+        ]
+    });
     let mut pages = Pages {
         known: BTreeMap::new(),
         driver: None,
         shared: Arc::clone(&inbox.driver),
+        tracked,
     };
     let mut buf = [0; 512];
     while go_on() {
         for (_, stop) in inbox.stops.try_iter().take(MOST_A_TURN) {
             pages.stop(stop, port);
         }
-        match port.read(&mut buf, TURN) {
+        let event = port.read(&mut buf, TURN);
+        if let (Some(monitor), Some(now)) = (monitor, port.now()) {
+            monitor.at(now);
+        }
+        match event {
             PortEvent::Bytes(0) => {}
             PortEvent::Bytes(count) => {
                 let bytes = buf.get(..count).unwrap_or_default();
                 pages.tell_all(&ToPage::Bytes(bytes.into()));
+                if let Some(monitor) = monitor {
+                    monitor.take_reply(bytes);
+                }
             }
-            PortEvent::Gone(why) => pages.tell_all(&of_port(port, Some(why))),
+            PortEvent::Gone(why) => {
+                pages.tell_all(&of_port(port, Some(why)));
+                if let Some(monitor) = monitor {
+                    monitor.port_gone();
+                }
+            }
             PortEvent::Back => pages.tell_all(&of_port(port, None)),
         }
         for _ in 0..MOST_A_TURN {
@@ -203,11 +241,18 @@ pub(super) fn run(port: &mut SharedPort, inbox: &Inbox, go_on: impl Fn() -> bool
         }
         for (id, frames) in inbox.frames.try_iter().take(MOST_A_TURN) {
             // Another page may have got the wheel since.
-            if pages.driver == Some(id)
-                && let Some(PortEvent::Gone(why)) = port.write(&frames)
-            {
+            if pages.driver != Some(id) {
+                continue;
+            }
+            if let Some(monitor) = monitor {
+                monitor.take_request(&frames);
+            }
+            if let Some(PortEvent::Gone(why)) = port.write(&frames) {
                 pages.tell_all(&of_port(port, Some(why)));
             }
+        }
+        for report in monitor.into_iter().flat_map(LinkMonitor::reports) {
+            pages.monitored(report, port);
         }
     }
     if pages.driver.is_some() {
@@ -234,6 +279,9 @@ impl Pages {
             FromPage::Came(page) => {
                 self.known.insert(id, page);
                 self.tell(id, &of_port(port, None));
+                for message in self.tracked.clone().into_iter().flatten() {
+                    self.tell(id, &ToPage::ServerMessage(message));
+                }
                 self.drive(id);
             }
             FromPage::Left => {
@@ -260,6 +308,22 @@ impl Pages {
                     self.tell_all(&of_port(port, Some(why)));
                 }
             }
+        }
+    }
+
+    /// Passes a report of the monitor on.
+    fn monitored(&mut self, report: MonitorReport, port: &mut SharedPort) {
+        let (place, message) = match report {
+            MonitorReport::Pose(pose) => (0, ServerMessage::Tracked { pose }),
+            MonitorReport::Lines(lines) => (1, ServerMessage::Monitor { lines }),
+            MonitorReport::Stop => {
+                port.stop(Halt::Stop);
+                return;
+            }
+        };
+        self.tell_all(&ToPage::ServerMessage(message.clone()));
+        if let Some(kept) = self.tracked.as_mut().and_then(|kept| kept.get_mut(place)) {
+            *kept = message;
         }
     }
 

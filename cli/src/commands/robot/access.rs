@@ -13,10 +13,9 @@ use swimmer_files::SwimmerFile;
 
 use super::find::{self, GreetingResult};
 use super::key::KeyFile;
-use super::port::{AnyPort, BAUD, Fresh, Means, NotOpen, Opened, Pace, fresh, open};
+use super::port::{AnyPort, BAUD, Means, NotOpen, Opened, Pace, fresh, open, open_filmed};
 use super::port_owner::{HeldBy, PortHolder, PortRequest, Relayed};
 use super::tank_cameras::TankCameras;
-use crate::arguments::load_swimmer;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
 use crate::link_log::Recorder;
@@ -221,25 +220,14 @@ impl Access {
         seed: u64,
         cameras: &TankCameras,
     ) -> Outcome<RobotConnection> {
-        let robot = match self.port.as_slice() {
-            [name] => fresh(name).map(|robot| (name, robot)),
-            _ => None,
+        let name = match self.port.as_slice() {
+            [name] => name.as_str(),
+            _ => "",
         };
-        let Some((name, Fresh { carrier, swimmer })) = robot else {
-            return Err(Failure::BadInput(
-                "--track twin sees a fresh virtual robot: use it with --port twin or --port emulator"
-                    .to_owned(),
-            ));
-        };
-        let named = swimmer.map(load_swimmer).transpose()?;
-        let truth = named.as_ref().unwrap_or(file);
         let recorder = self.recorder()?;
-        let line = carrier.line(truth, seed, &self.board)?;
-        let opened = Opened {
-            port: Box::new(line.map_device(|robot| cameras.film(robot))),
-            name: name.clone(),
-        };
-        self.greeted(opened, self.session()?, recorder, command)
+        let means = self.means(Pace::AsFastAsPossible)?;
+        let opened = open_filmed(name, &means, file, seed, cameras)?;
+        self.greeted(opened, means.session, recorder, command)
     }
 
     fn recorder(&self) -> Outcome<Option<Recorder>> {

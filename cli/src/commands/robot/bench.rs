@@ -79,7 +79,7 @@ impl Bench {
         seed: u64,
         interrupt: Interrupt,
     ) -> Outcome<Self> {
-        cameras.check(access)?;
+        cameras.check(access.is_fresh())?;
         let model = crate::arguments::model(file)?;
         let tank = TankCameras::default();
         let mut tracking = cameras.open(tank.clone(), &file.swimmer.links)?;
@@ -255,8 +255,7 @@ impl Bench {
     /// Time of the first cycle's first set-point on the port's clock \[s\].
     fn began_s(&self, telemetry: &Telemetry, period_us: u32) -> f64 {
         let now_s = self.now_s();
-        let cycles = f64::from(telemetry.cycle) + f64::from(telemetry.phase) / 65_536.0;
-        let into_s = cycles * f64::from(period_us) / 1e6;
+        let into_s = into_play_s(telemetry, period_us);
         let fit = self.line.robot.clock();
         let reported_s = fit.map_or(now_s, |fit| fit.host_time(telemetry.robot_us as f64 / 1e6));
         reported_s.min(now_s) - into_s
@@ -349,6 +348,12 @@ impl Bench {
         }
         self.line.close()
     }
+}
+
+/// Time since the first set-point of a play \[s\].
+pub(super) fn into_play_s(telemetry: &Telemetry, period_us: u32) -> f64 {
+    let cycles = f64::from(telemetry.cycle) + f64::from(telemetry.phase) / 65_536.0;
+    cycles * f64::from(period_us) / 1e6
 }
 
 fn in_boxes(results: Vec<Evaluated>) -> Vec<Event> {

@@ -100,7 +100,7 @@ fn tolerance(text: &str) -> Result<Tolerance, String> {
 pub(super) fn go(access: &Access, go: &Go, output: Output) -> Outcome {
     let file = load_swimmer(&go.swimmer)?;
     let model = crate::arguments::model(&file)?;
-    go.tracked.cameras().check(access)?;
+    go.tracked.cameras().check(access.is_fresh())?;
     for target in go.via.iter().chain(&go.to) {
         inside(target, &file, &go.tank, go.margin)?;
     }

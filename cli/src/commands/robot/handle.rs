@@ -193,7 +193,7 @@ impl RobotHandle {
         let access = options.access();
         let cameras = options.cameras(&access)?;
         if let Some(cameras) = &cameras {
-            cameras.cameras().check(&access)?;
+            cameras.cameras().check(access.is_fresh())?;
         }
         let tank = TankCameras::default();
         let mut line = if access.is_fresh() {

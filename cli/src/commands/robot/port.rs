@@ -8,10 +8,12 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use host_link::Port;
 use host_link::port::{OpenError, SerialPort, TcpPort};
 use host_link::session::SessionConfig;
+use swimmer_files::SwimmerFile;
 
 use super::port_owner::program_with;
+use super::tank_cameras::TankCameras;
 use crate::arguments::load_swimmer;
-use crate::failure::Failure;
+use crate::failure::{Failure, Outcome};
 use crate::virtual_robot::{Carrier, EmulatedBoard};
 
 /// Any port.
@@ -102,6 +104,40 @@ pub(super) fn open(name: &str, means: &Means) -> Result<Opened, NotOpen> {
     })
 }
 
+/// Opens a fresh virtual robot in whose tank the swimmer of its name, otherwise `file`, is the truth, and keeps the frames of its
+/// cameras.
+///
+/// # Errors
+/// [`Failure::BadInput`] if the name is another port's, and as [`open`].
+pub(super) fn open_filmed(
+    name: &str,
+    means: &Means,
+    file: &SwimmerFile,
+    seed: u64,
+    cameras: &TankCameras,
+) -> Outcome<Opened> {
+    let Some(Fresh { carrier, swimmer }) = fresh(name) else {
+        return Err(Failure::BadInput(
+            "--track twin sees a fresh virtual robot: use it with --port twin or --port emulator"
+                .to_owned(),
+        ));
+    };
+    let named = swimmer.map(load_swimmer).transpose()?;
+    let line = carrier.line(named.as_ref().unwrap_or(file), seed, &means.board)?;
+    let port = line.map_device(|robot| cameras.film(robot));
+    Ok(Opened {
+        port: paced(port, means.pace),
+        name: name.to_owned(),
+    })
+}
+
+fn paced(port: impl Port + 'static, pace: Pace) -> AnyPort {
+    match pace {
+        Pace::AsFastAsPossible => Box::new(port),
+        Pace::RealTime => Box::new(Paced::new(port)),
+    }
+}
+
 fn any_port(name: &str, means: &Means) -> Result<AnyPort, NotOpen> {
     if let Some(Fresh { carrier, swimmer }) = fresh(name) {
         let port = carrier.line(
@@ -109,10 +145,7 @@ fn any_port(name: &str, means: &Means) -> Result<AnyPort, NotOpen> {
             1,
             &means.board,
         )?;
-        return Ok(match means.pace {
-            Pace::AsFastAsPossible => Box::new(port),
-            Pace::RealTime => Box::new(Paced::new(port)),
-        });
+        return Ok(paced(port, means.pace));
     }
     if let Some(address) = name.strip_prefix("tcp:") {
         is_an_address(address)?;

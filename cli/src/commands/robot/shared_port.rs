@@ -15,11 +15,15 @@ use host_link::session::{Event, Session, SessionConfig, Ticket};
 use link_protocol::{Decoder, Message, StateName, Telemetry};
 
 use super::access::{A_MOMENT, open_when_free};
+use super::link_monitor::CamerasOverLink;
 use super::outputs::{Done, state};
-use super::port::{AnyPort, BAUD, Means, Pace, open, session_seed};
+use super::port::{AnyPort, BAUD, Means, Pace, fresh, open, open_filmed, session_seed};
 use super::port_owner::{PortHolder, PortRequest, Relayed};
 use crate::failure::Outcome;
 use crate::virtual_robot::EmulatedBoard;
+
+/// Seed of a fresh virtual robot.
+const SEED: u64 = 1;
 
 /// Port and speed.
 #[derive(Debug, clap::Args)]
@@ -61,11 +65,21 @@ pub(crate) enum PortEvent {
 }
 
 impl SharedPortOptions {
-    /// Opens the port, if one was named; other processes see `command` as its holder.
+    /// Returns `true` if the port is a fresh virtual robot.
+    pub(crate) fn is_fresh(&self) -> bool {
+        self.port.as_deref().and_then(fresh).is_some()
+    }
+
+    /// Opens the port, if one was named; other processes see `command` as its holder. Frames of the cameras over a fresh virtual
+    /// robot go to `cameras`.
     ///
     /// # Errors
     /// [`crate::failure::Failure::Tried`] when it cannot be opened or somebody else has it.
-    pub(crate) fn open(self, command: &str) -> Outcome<Option<SharedPort>> {
+    pub(crate) fn open(
+        self,
+        command: &str,
+        cameras: Option<&CamerasOverLink>,
+    ) -> Outcome<Option<SharedPort>> {
         let Some(name) = self.port else {
             return Ok(None);
         };
@@ -75,13 +89,18 @@ impl SharedPortOptions {
             session: SessionConfig::new(session_seed()),
             board: self.board,
         };
-        let port = open_when_free(&name, &means)?.port;
+        let opened = match cameras.filter(|cameras| cameras.are_virtual()) {
+            Some(CamerasOverLink { file, tank, .. }) => {
+                open_filmed(&name, &means, file, SEED, tank)?
+            }
+            None => open_when_free(&name, &means)?,
+        };
         Ok(Some(SharedPort {
             holder: PortHolder::announce(&name, command),
             name,
             outbound: SendQueue::paced(bytes_per_second(&means)),
             means,
-            port: Some(port),
+            port: Some(opened.port),
             stopping: None,
             decoder: Decoder::new(),
             telemetry: None,
@@ -94,6 +113,11 @@ impl SharedPort {
     /// Name of the port.
     pub(crate) fn name(&self) -> &str {
         &self.name
+    }
+
+    /// Present time on the port's clock; `None` while it is gone.
+    pub(crate) fn now(&self) -> Option<Duration> {
+        self.port.as_ref().map(host_link::Port::now)
     }
 
     /// `true` if it is open.

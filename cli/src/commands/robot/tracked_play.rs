@@ -2,10 +2,7 @@
 
 use std::{fmt, iter};
 
-use experiment::{
-    Course, CycleReport, Departure, Evaluated, Event, GaitOnRobot, Interruption, MeasuredMotion,
-    TankWalls, TrackedPlay,
-};
+use experiment::{Course, Evaluated, Event, GaitOnRobot, Interruption, TankWalls, TrackedPlay};
 use forecast::PlaylistTable;
 use serde::Serialize;
 
@@ -15,20 +12,28 @@ use super::bench::Bench;
 use super::motion::Played;
 use super::outputs::print_refusal;
 use super::playing;
+use super::tracked_report::{MonitorLine, TrackedMotion, cycle_lines};
 use super::tracking::CamerasOf;
 use super::upload::BeforePlay;
 use crate::arguments::load_swimmer;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::{CTRL_C, Interrupt};
 use crate::output::{Output, aside};
-use crate::quantity;
 
 /// Seed of a fresh virtual robot.
 const SEED: u64 = 1;
 /// A robot that is not seen for longer is stopped \[s\].
-const LONGEST_BLANK_S: f64 = 5.0;
+pub(super) const LONGEST_BLANK_S: f64 = 5.0;
 /// Distance from the walls of `--tank` at which the robot is stopped \[m\].
-const MARGIN_M: f64 = 0.01;
+pub(super) const MARGIN_M: f64 = 0.01;
+
+/// Reason of a stop at a wall.
+pub(super) const NEAR_WALL: &str = "the robot came nearer to a wall than 10 mm";
+
+/// Reason of a stop after a blank of so many seconds.
+pub(super) fn not_seen(seconds: f64) -> String {
+    format!("the robot was not seen for {seconds:.1} s; check the cameras")
+}
 
 /// Plays a gait, and compares each tracked cycle with its prediction.
 pub(super) fn play(
@@ -89,8 +94,8 @@ pub(super) fn play(
         tracked: monitored
             .play
             .as_ref()
-            .map_or_else(Tracked::default, |play| {
-                Tracked::of(play, bench.camera_delay_s())
+            .map_or_else(TrackedMotion::default, |play| {
+                TrackedMotion::of(play, bench.camera_delay_s())
             }),
     };
     bench.close()?;
@@ -124,10 +129,8 @@ impl Reason {
         let why = match self {
             Self::Operator if interrupt.requested() => interrupt.pressed().to_owned(),
             Self::Operator => "another process stopped it".to_owned(),
-            Self::Wall => "the robot came nearer to a wall than 10 mm".to_owned(),
-            Self::Lost(seconds) => {
-                format!("the robot was not seen for {seconds:.1} s; check the cameras")
-            }
+            Self::Wall => NEAR_WALL.to_owned(),
+            Self::Lost(seconds) => not_seen(*seconds),
             Self::Robot(reason) => reason.clone(),
         };
         format!("{why}: the robot was stopped after {cycles} whole cycles")
@@ -253,43 +256,14 @@ impl Monitored {
     /// Prints the cycles that were evaluated since, and departures when they are found.
     fn show(&mut self) {
         let Some(play) = &self.play else { return };
-        let reports = play.reports();
-        for index in self.shown..reports.len() {
-            let Some(report) = reports.get(index) else {
-                break;
-            };
-            self.output.line(&cycle_line(report));
-            if let Some(departure) = &report.departure {
-                let before = index
-                    .checked_sub(1)
-                    .and_then(|index| reports.get(index)?.departure.as_ref());
-                if before.is_none_or(|before| before.since != departure.since) {
-                    aside(&format!("warning: {}.", in_words(departure)));
-                }
+        for MonitorLine { text, warns } in cycle_lines(play.reports(), self.shown) {
+            if warns {
+                aside(&format!("warning: {text}."));
+            } else {
+                self.output.line(&text);
             }
         }
-        self.shown = reports.len();
-    }
-}
-
-fn in_words(departure: &Departure) -> String {
-    format!(
-        "the robot departs from the prediction since cycle {}: {}",
-        departure.since + 1,
-        departure.likeness
-    )
-}
-
-fn cycle_line(report: &CycleReport) -> String {
-    let predicted = quantity::length(report.predicted.position().norm());
-    let number = report.cycle + 1;
-    match &report.measured {
-        Some(measured) => format!(
-            "cycle {number}: {} ± {}, predicted {predicted}",
-            quantity::length(measured.x_m.hypot(measured.y_m)),
-            quantity::length(measured.interval_m),
-        ),
-        None => format!("cycle {number}: an end was not seen, predicted {predicted}"),
+        self.shown = play.reports().len();
     }
 }
 
@@ -298,109 +272,13 @@ fn cycle_line(report: &CycleReport) -> String {
 struct TrackedOutput {
     #[serde(flatten)]
     played: Played,
-    tracked: Tracked,
-}
-
-/// Motion over the cycles that have ended, in the frame of the middle link at the start of the first.
-#[derive(Debug, Default, Serialize)]
-struct Tracked {
-    cycles: usize,
-    predicted: Option<Predicted>,
-    /// `null` if the start of the first cycle or the end of the last was not seen.
-    measured: Option<Measured>,
-    /// Delay of the cameras beyond the one that they state, as the play shows it; `null` if it does not.
-    camera_delay_s: Option<f64>,
-    /// Departures from the prediction, in words.
-    departures: Vec<String>,
-}
-
-#[derive(Debug, Serialize)]
-struct Predicted {
-    x_m: f64,
-    y_m: f64,
-    rotation_rad: f64,
-}
-
-/// Measured motion, with half widths of 95 % intervals.
-#[derive(Debug, Serialize)]
-struct Measured {
-    x_m: f64,
-    y_m: f64,
-    rotation_rad: f64,
-    interval_m: f64,
-    interval_rad: f64,
-}
-
-impl From<MeasuredMotion> for Measured {
-    fn from(motion: MeasuredMotion) -> Self {
-        Self {
-            x_m: motion.x_m,
-            y_m: motion.y_m,
-            rotation_rad: motion.turn_rad,
-            interval_m: motion.interval_m,
-            interval_rad: motion.interval_rad,
-        }
-    }
-}
-
-impl Tracked {
-    fn of(play: &TrackedPlay, camera_delay_s: Option<f64>) -> Self {
-        let reports = play.reports();
-        let mut departures: Vec<&Departure> = Vec::new();
-        for departure in reports
-            .iter()
-            .filter_map(|report| report.departure.as_ref())
-        {
-            // The last one of a row: its cause is known best.
-            match departures.last_mut() {
-                Some(last) if last.since == departure.since => *last = departure,
-                _ => departures.push(departure),
-            }
-        }
-        let predicted = play.predicted();
-        Self {
-            cycles: reports.len(),
-            predicted: Some(Predicted {
-                x_m: predicted.x,
-                y_m: predicted.y,
-                rotation_rad: predicted.theta,
-            }),
-            measured: play.measured().map(Measured::from),
-            camera_delay_s,
-            departures: departures.into_iter().map(in_words).collect(),
-        }
-    }
+    tracked: TrackedMotion,
 }
 
 impl fmt::Display for TrackedOutput {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.played)?;
-        let tracked = &self.tracked;
-        if let Some(predicted) = &tracked.predicted {
-            write!(
-                f,
-                "\nPredicted over {} cycles: {} (x {}, y {}), turned by {}.",
-                tracked.cycles,
-                quantity::length(predicted.x_m.hypot(predicted.y_m)),
-                quantity::length(predicted.x_m),
-                quantity::length(predicted.y_m),
-                quantity::angle(predicted.rotation_rad),
-            )?;
-        }
-        match &tracked.measured {
-            Some(measured) => write!(
-                f,
-                "\nTracked: {} ± {} (x {}, y {}), turned by {} ± {}.",
-                quantity::length(measured.x_m.hypot(measured.y_m)),
-                quantity::length(measured.interval_m),
-                quantity::length(measured.x_m),
-                quantity::length(measured.y_m),
-                quantity::angle(measured.rotation_rad),
-                quantity::angle(measured.interval_rad),
-            )?,
-            None => f.write_str("\nTracked: the start or the end was not seen.")?,
-        }
-        for departure in &tracked.departures {
+        write!(f, "{}\n{}", self.played, self.tracked)?;
+        for departure in &self.tracked.departures {
             write!(f, "\n  note: {departure}")?;
         }
         Ok(())

@@ -9,7 +9,7 @@ use pose_source::{Frame, Received, Recorder, Settings, SourceName, Stream};
 use swimmer_files::{PointName, Reflector, Reflectors, RigidBody};
 use swimmer_model::Links;
 
-use super::access::{Access, RobotConnection};
+use super::access::RobotConnection;
 use super::tank_cameras::TankCameras;
 use crate::arguments::angle;
 use crate::failure::{Failure, Outcome};
@@ -18,7 +18,7 @@ use crate::output::aside;
 use crate::recording::LiveAxes;
 
 /// Longest time until the cameras show the robot and its front \[s\].
-const PATIENCE_S: f64 = 20.0;
+pub(super) const PATIENCE_S: f64 = 20.0;
 /// Frames that are read at once from a stream; the rest follows at the next beat.
 const MOST_AT_ONCE: usize = 512;
 /// Period of the quickest cycle that a robot plays, a turn of `optimize steer` \[s\].
@@ -130,23 +130,23 @@ pub(crate) struct CamerasOf<'a> {
 }
 
 impl CamerasOf<'_> {
-    /// Refuses a source that cannot show this robot.
+    /// Refuses a source that cannot show this robot. `is_fresh`: the robot is a virtual one of this process.
     ///
     /// # Errors
     /// [`Failure::BadInput`].
-    pub(super) fn check(&self, access: &Access) -> Outcome {
+    pub(super) fn check(&self, is_fresh: bool) -> Outcome {
         let problem = match self.source {
             SourceName::File(path) => format!(
                 "{} is a recording, or does not exist: the robot needs cameras that see it now, as natnet:HOST or tcp:HOST:PORT",
                 path.display()
             ),
-            SourceName::Twin if !access.is_fresh() => {
+            SourceName::Twin if !is_fresh => {
                 "--track twin are the cameras of a fresh virtual robot: give --port twin or emulator; `swimmer twin --natnet` streams \
                  those of a twin behind another port"
                     .to_owned()
             }
             SourceName::Twin => return Ok(()),
-            _ if access.is_fresh() => {
+            _ if is_fresh => {
                 "only --track twin sees a fresh virtual robot; `swimmer twin --pty LINK --natnet ADDR` makes one that other cameras see"
                     .to_owned()
             }
@@ -297,7 +297,7 @@ impl Tracking {
         interrupt: &Interrupt,
     ) -> Outcome {
         let begun_s = port_s(line);
-        while !self.filter.knows_front() {
+        while !self.knows_front() {
             line.beat()?;
             let now_s = port_s(line);
             self.poses(now_s)?;
@@ -314,7 +314,13 @@ impl Tracking {
         Ok(())
     }
 
-    fn not_shown(&self) -> String {
+    /// Returns `true` once the cameras have shown the robot and its front.
+    pub(super) fn knows_front(&self) -> bool {
+        self.filter.knows_front()
+    }
+
+    /// Reason why no pose is known, with the next step.
+    pub(super) fn not_shown(&self) -> String {
         let (counts, source) = (self.filter.counts(), &self.source);
         let advice = if self.filter.is_tracked() {
             "two points are the reflectors, but none of them has its name, so that the front is unknown. Name them with --front and \

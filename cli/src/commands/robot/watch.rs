@@ -46,7 +46,7 @@ pub(super) fn watch(access: &Access, arguments: &Watch, output: Output) -> Outco
         .as_ref()
         .map(|source| arguments.visible.of(source));
     if let Some(cameras) = &cameras {
-        cameras.check(access)?;
+        cameras.check(access.is_fresh())?;
     }
     let mut source = Source::find(access)?;
     let mut tracking = match cameras {

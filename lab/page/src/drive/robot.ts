@@ -7,7 +7,7 @@ import { startWorker } from "../wasm/embedded.ts";
 import { fragment, setFragment } from "../shell/fragment.ts";
 import { compose, frameOf, MIDDLE, type Place, type Pose } from "./body.ts";
 import { addRecordings, endReplay, unreadable } from "./recordings.ts";
-import type { Forecast, Health, Held, Hello, LinkState, News, Order, Request, Stands, StateName, TableInfo, Telemetry, WireOptions } from "./words.ts";
+import type { Forecast, Health, Held, Hello, LinkState, MonitorLine, News, Order, Request, Stands, StateName, TableInfo, Telemetry, TrackedPose, WireOptions } from "./words.ts";
 
 export const link = signal<{ state: LinkState; name: string; reason: string }>({ state: "closed", name: "", reason: "" });
 export const wheel = signal<{ yours: boolean; free: boolean } | null>(null);
@@ -48,6 +48,12 @@ export const start = signal<Pose>(MIDDLE);
 /** Path of this play by the robot's own model, and the true one of the robot in the page, in the tank. */
 export const path = signal<readonly Place[]>([]);
 export const truth = signal<readonly Place[]>([]);
+/** Pose by the cameras of the server: undefined without cameras, null while they do not see the robot. */
+export const tracked = signal<TrackedPose | undefined>(undefined);
+/** Path of this play by the cameras; null where the robot was not seen. */
+export const trackedPath = signal<readonly (Place | null)[]>([]);
+/** Lines of the monitor about this play. */
+export const monitor = signal<readonly MonitorLine[]>([]);
 
 /** Age above which telemetry is grey, ms; the robot sends it 25 times per second. */
 const FRESH = 500;
@@ -82,7 +88,11 @@ function hear(news: News): void {
     case "link":
       link.value = news;
       if (news.state !== "open") busy.value = "";
-      if (news.state === "closed") wheel.value = telemetry.value = hello.value = stands.value = null;
+      if (news.state === "closed") {
+        wheel.value = telemetry.value = hello.value = stands.value = null;
+        tracked.value = undefined;
+        monitor.value = [];
+      }
       // A new session requests the status again, since e-stops or settings may have changed.
       if (news.state !== "open") table.value = held.value = null;
       break;
@@ -123,6 +133,13 @@ function hear(news: News): void {
       stands.value = news.stands;
       if (MOVES.has(news.stands.state)) truth.value = [...truth.peek().slice(1 - KEPT), [news.stands.pose[0], news.stands.pose[1]]];
       break;
+    case "tracked":
+      tracked.value = news.pose;
+      if (MOVES.has(telemetry.peek()?.state ?? "Stopped")) trackedPath.value = [...trackedPath.peek().slice(1 - KEPT), news.pose && [news.pose[0], news.pose[1]]];
+      break;
+    case "monitor":
+      monitor.value = news.lines;
+      break;
     case "wheel":
       wheel.value = news;
       break;
@@ -158,9 +175,10 @@ function take(latest: Telemetry): void {
   const began = latest.state === "Starting" && before?.state !== "Starting";
   if (again || began) {
     path.value = truth.value = [];
+    trackedPath.value = [];
     endReplay();
   }
-  const truly = stands.peek()?.pose;
+  const truly = stands.peek()?.pose ?? tracked.peek();
   const cyclesBegin = latest.state === "Playing" && before?.state === "Starting";
   const rests = !MOVES.has(latest.state);
   // Poses are compared at rest, since true ones arrive at other times. The robot's own model begins anew at the first cycle, where the
@@ -192,6 +210,7 @@ export function putBack(): void {
 export function connect(wire: WireOptions, key: string | null): void {
   wireKind.value = wire.kind;
   history.value = path.value = truth.value = [];
+  trackedPath.value = [];
   base.value = start.value = MIDDLE;
   telemetry.value = null;
   order({ do: "open", wire, key });

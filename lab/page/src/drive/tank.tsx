@@ -9,17 +9,28 @@ import { compose, MIDDLE, outline, type Place, type Pose } from "./body.ts";
 import { cyclesToDraw } from "./controls.tsx";
 import { forecast } from "./gait.ts";
 import { replay } from "./recordings.ts";
-import { base, link, path, putBack, stands, start, telemetry, truth } from "./robot.ts";
+import { base, link, monitor, path, putBack, stands, start, telemetry, tracked, trackedPath, truth } from "./robot.ts";
 
 /** A path in the tank. */
 interface Path {
   name: string;
   /** Class of its line. */
   kind: string;
-  points: readonly Place[];
+  /** Pieces between which the robot was not seen. */
+  pieces: readonly (readonly Place[])[];
 }
 
-/** Body that is drawn: of the replay, of the robot in the page, or by the robot's own model. */
+/** Pieces of a path between its gaps. */
+function pieces(points: readonly (Place | null)[]): Place[][] {
+  const all: Place[][] = [[]];
+  for (const point of points) {
+    if (point) all.at(-1)?.push(point);
+    else if (all.at(-1)?.length) all.push([]);
+  }
+  return all;
+}
+
+/** Body that is drawn: of the replay, of the robot in the page, by the cameras, or by the robot's own model. */
 const body = computed((): { pose: Pose; joints: Place } => {
   const past = replay.value;
   if (past) return { pose: past.sample.pose, joints: past.sample.phi_rad };
@@ -27,6 +38,7 @@ const body = computed((): { pose: Pose; joints: Place } => {
   const latest = telemetry.value;
   if (!latest) return { pose: MIDDLE, joints: [0, 0] };
   const { x, y, theta } = latest.pose;
+  if (tracked.value) return { pose: tracked.value, joints: [latest.setpoint[0] * 1e-4, latest.setpoint[1] * 1e-4] };
   return { pose: compose(base.value, [x, y, theta]), joints: [latest.setpoint[0] * 1e-4, latest.setpoint[1] * 1e-4] };
 });
 
@@ -52,15 +64,16 @@ const predicted = computed((): { points: Place[]; wall: number | null; distance:
   return { points, wall, distance: Math.hypot(began[0] - start.value[0], began[1] - start.value[1]) };
 });
 
-/** Drawn paths, in the order of the legend. Tracked paths of a live loop belong into this list. */
+/** Drawn paths, in the order of the legend. */
 const paths = computed((): readonly Path[] => {
   const past = replay.value;
-  if (past) return [{ name: "recorded, by the robot’s own model", kind: "own", points: past.before.map(({ pose: [x, y] }) => [x, y] as const) }];
+  if (past) return [{ name: "recorded, by the robot’s own model", kind: "own", pieces: [past.before.map(({ pose: [x, y] }) => [x, y] as const)] }];
   return [
-    { name: "predicted", kind: "predicted", points: predicted.value.points },
-    { name: "by the robot’s own model", kind: "own", points: path.value },
-    { name: "true, in the virtual tank", kind: "true", points: truth.value },
-  ].filter(({ points }) => points.length > 1);
+    { name: "predicted", kind: "predicted", pieces: [predicted.value.points] },
+    { name: "by the robot’s own model", kind: "own", pieces: [path.value] },
+    { name: "true, in the virtual tank", kind: "true", pieces: [truth.value] },
+    { name: "tracked by the cameras", kind: "tracked", pieces: pieces(trackedPath.value) },
+  ].filter(({ pieces }) => pieces.some((points) => points.length > 1));
 });
 
 const near = signal(false);
@@ -71,7 +84,7 @@ function frame(pose: Pose, reach: number, [long, wide]: readonly [number, number
     const margin = 0.02 * long;
     return { left: -long / 2 - margin, bottom: -wide / 2 - margin, width: long + 2 * margin, height: wide + 2 * margin };
   }
-  const all = [...paths.value.flatMap(({ points }) => points), [pose[0], pose[1]] as const];
+  const all = [...paths.value.flatMap(({ pieces }) => pieces.flat()), [pose[0], pose[1]] as const];
   const xs = all.map(([x]) => x);
   const ys = all.map(([, y]) => y);
   const [x0, x1] = [Math.min(...xs) - reach, Math.max(...xs) + reach];
@@ -93,9 +106,9 @@ export function Tank() {
     <figure class="card way" aria-label="The swimmer in its tank">
       <figcaption class="bar-of-buttons">
         <h2>Tank, {size[0]} × {size[1]} m</h2>
-        <span class="soft">{WHERE[replay.value ? "replay" : stands.value ? "twin" : "robot"]}</span>
+        <span class="soft">{WHERE[replay.value ? "replay" : stands.value ? "twin" : tracked.value === undefined ? "robot" : tracked.value ? "seen" : "unseen"]}</span>
         <button class="small" aria-pressed={near.value} onClick={() => (near.value = !near.value)}>Near view</button>
-        {!stands.value && link.value.state !== "closed" && <button class="small" onClick={putBack} title="The robot was put back into the middle">To the middle</button>}
+        {!stands.value && !tracked.value && link.value.state !== "closed" && <button class="small" onClick={putBack} title="The robot was put back into the middle">To the middle</button>}
       </figcaption>
       <svg
         id="tank"
@@ -106,7 +119,7 @@ export function Tank() {
         aria-label={`The swimmer from above, ${figure(pose[0] * 1000, 0)} mm along and ${figure(pose[1] * 1000, 0)} mm across from the middle of the tank`}
       >
         <rect class="walls" x={-size[0] / 2} y={-size[1] / 2} width={size[0]} height={size[1]} />
-        {paths.value.map(({ kind, points }) => <path key={kind} class={`tank-path ${kind}`} d={line(points, false)} />)}
+        {paths.value.map(({ kind, pieces }) => <path key={kind} class={`tank-path ${kind}`} d={pieces.map((points) => line(points, false)).join("")} />)}
         {links.sphere_radius_m > 0 && <circle class="sphere" cx={pose[0]} cy={-pose[1]} r={links.sphere_radius_m} />}
         <path class="body" d={line(corners, false)} />
         <circle class="tip" cx={tip[0]} cy={-tip[1]} r={Math.max(0.006, unit * 0.6)} />
@@ -118,6 +131,7 @@ export function Tank() {
         ))}
       </ul>
       <Numbers />
+      <Monitor />
     </figure>
   );
 }
@@ -126,6 +140,8 @@ const WHERE = {
   replay: "a recording, from the middle of the tank",
   twin: "the virtual tank",
   robot: "as if it had begun in the middle; no camera is connected",
+  seen: "where the cameras see it",
+  unseen: "the cameras do not see it",
 };
 
 /** Bar of a round length, about a fifth of the width. */
@@ -153,5 +169,15 @@ function Numbers() {
       {own && `By the robot’s own model in this play: ${figure(own.x * 1000, 1)} mm along, ${figure(own.y * 1000, 1)} mm across. `}
       {wall !== null && <strong class="error">In cycle {wall} it meets a wall of the tank.</strong>}
     </p>
+  );
+}
+
+/** Comparison of each tracked cycle with its prediction, by the server. */
+function Monitor() {
+  if (replay.value || monitor.value.length === 0) return null;
+  return (
+    <ul class="monitor" aria-label="Tracked cycles" aria-live="polite">
+      {monitor.value.map(({ text, warns }, k) => <li key={k} class={warns ? "warning" : ""}>{text}</li>)}
+    </ul>
   );
 }

@@ -1,7 +1,7 @@
 // Transports of bytes: a serial port of the browser, a WebSocket of `swimmer lab`, the twin in the page.
 
 import type { Module } from "../wasm/module.ts";
-import type { Stands, WireOptions } from "./words.ts";
+import type { MonitorLine, Stands, TrackedPose, WireOptions } from "./words.ts";
 
 /** Callbacks for the events of a transport. */
 export interface WireListener {
@@ -14,6 +14,9 @@ export interface WireListener {
   wheel(yours: boolean, free: boolean): void;
   stoppedByAnother(): void;
   stands(stands: Stands): void;
+  /** Cameras of the server: pose of the robot, and their comparison with the prediction. */
+  tracked(pose: TrackedPose): void;
+  monitor(lines: MonitorLine[]): void;
 }
 
 export interface Wire {
@@ -138,6 +141,8 @@ class SocketWire implements Wire {
   #hear(message: ServerMessage): void {
     if (message.told === "wheel") this.listener.wheel(message.yours, message.free);
     else if (message.told === "stopped") this.listener.stoppedByAnother();
+    else if (message.told === "tracked") this.listener.tracked(message.pose);
+    else if (message.told === "monitor") this.listener.monitor(message.lines);
     else if (message.open) this.listener.up(message.name, message.bytes_per_second);
     else this.listener.gone(message.why ?? `${message.name} is gone`);
   }
@@ -165,7 +170,9 @@ class SocketWire implements Wire {
 type ServerMessage =
   | { told: "wheel"; yours: boolean; free: boolean }
   | { told: "port"; name: string; open: boolean; why: string | null; bytes_per_second: number }
-  | { told: "stopped" };
+  | { told: "stopped" }
+  | { told: "tracked"; pose: TrackedPose }
+  | { told: "monitor"; lines: MonitorLine[] };
 
 /** Used parts of Web Serial, which TypeScript's library lacks. */
 export interface SerialPort {

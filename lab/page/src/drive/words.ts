@@ -102,6 +102,15 @@ export interface Stands {
   cycles: number;
 }
 
+/** Pose of the middle link in the tank by the cameras of `swimmer lab --track`; null while the robot is not seen. */
+export type TrackedPose = [number, number, number] | null;
+
+/** Line of the monitor about a play; `warns` if it names a departure or the reason of a stop. */
+export interface MonitorLine {
+  text: string;
+  warns: boolean;
+}
+
 /** Telemetry of a recorded play; the pose is that of the robot's own model, from the start of the play. */
 export interface RecordedSample {
   t_s: number;
@@ -151,6 +160,8 @@ export type News =
   | { kind: "stands"; stands: Stands }
   | { kind: "wheel"; yours: boolean; free: boolean }
   | { kind: "stopped by another" }
+  | { kind: "tracked"; pose: TrackedPose }
+  | { kind: "monitor"; lines: MonitorLine[] }
   | { kind: "forecast"; of: number; forecast: Forecast | null; reason: string }
   /** The worker checks that the main thread is alive. */
   | { kind: "alive?" }

@@ -75,6 +75,8 @@ const listener: WireListener = {
   },
   stoppedByAnother: () => tell({ kind: "stopped by another" }),
   stands: (stands) => tell({ kind: "stands", stands }),
+  tracked: (pose) => tell({ kind: "tracked", pose }),
+  monitor: (lines) => tell({ kind: "monitor", lines }),
 };
 
 let lineSpeed = 11_520;
