@@ -11,8 +11,9 @@ export const BROWSERS = {
   firefox: () => puppeteer.launch({ browser: "firefox", executablePath: FIREFOX, headless: true }),
 };
 
-/** Milliseconds that anything may take; the machines of CI are slow and shared. */
+/** Milliseconds that anything may take without a sign of progress, and with signs; the machines of CI are slow and shared. */
 const PATIENCE = 60_000;
+const LONGEST = 600_000;
 
 /** Firefox ESR has no command for the screen's orientation, which comes after the size has been set. */
 function unlessOrientation(error) {
@@ -45,13 +46,20 @@ export class Tab {
     return this.page.evaluate(perform, argument);
   }
 
-  /** Waits until the page says yes, by something that can be sent: no element. */
+  /**
+   * Waits until the page says yes, by something that can be sent: no element. The patience begins anew when the page reports progress:
+   * a search that is under way may take several times as long on a busy machine.
+   */
   async until(ask, argument, what = ask) {
     const begun = Date.now();
+    let [progress, since] = ["", begun];
     for (;;) {
       const answer = await this.evaluate(ask, argument);
       if (answer) return answer;
-      if (Date.now() - begun > PATIENCE) throw new Error(`waiting in vain for ${what}; the page said: ${this.said.join("; ")}`);
+      const status = await this.evaluate(() => [...document.querySelectorAll('[aria-busy="true"] [role="status"]')].map(({ textContent }) => textContent).join("; "));
+      const now = Date.now();
+      if (status !== progress) [progress, since] = [status, now];
+      if (now - since > PATIENCE || now - begun > LONGEST) throw new Error(`waiting in vain for ${what} (${progress}); the page said: ${this.said.join("; ")}`);
       await new Promise((resolve) => setTimeout(resolve, 25));
     }
   }
