@@ -7,6 +7,7 @@ use operations::{Error, ErrorKind};
 use swimmer_files::FileError;
 use swimmer_model::{InvalidSwimmer, UncommonDrag};
 
+use crate::new_folder::with_places;
 use crate::output::verbose;
 
 /// Failure of a command; the text names the action, its object, and the next step.
@@ -48,6 +49,17 @@ impl Failure {
         match self {
             Self::Tried(_) | Self::LinkLost(_) | Self::AlreadyPrinted(_) => 1,
             Self::BadInput(_) => BAD_INPUT,
+        }
+    }
+
+    /// The same for a caller in the same process.
+    pub(crate) fn into_error(self) -> Error {
+        let message = with_places(&self.to_string());
+        match self {
+            Self::BadInput(_) => Error::refused(message),
+            Self::Tried(_) | Self::LinkLost(_) | Self::AlreadyPrinted(_) => {
+                Error::unsuccessful(message)
+            }
         }
     }
 }

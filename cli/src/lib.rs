@@ -2,8 +2,8 @@
 //!
 //! Entry points: [`run`] is the whole command, arguments in and exit status out. A caller in the same process (the Python wheel)
 //! keeps its own standard output, its own Ctrl-C and its own threads: it computes by `operations`, drives a robot by
-//! [`RobotHandle`], runs experiments by [`Experiment`], writes the commands' files by [`ResultsFolder`], [`NewFront`] and
-//! [`NewPicture`], and gets the JSON document of any other command by [`run_captured`].
+//! [`RobotHandle`], runs experiments by [`Experiment`], and writes the commands' files by [`ResultsFolder`], [`NewFront`],
+//! [`NewPicture`], [`NewPlaylist`] and [`NewMap`].
 
 // All prints go through `output`, which does not panic if the reader has gone.
 #![deny(clippy::print_stdout, clippy::print_stderr)]
@@ -39,15 +39,19 @@ use std::ffi::OsString;
 use clap::FromArgMatches as _;
 use clap::error::ErrorKind;
 
-pub use crate::captured::{CapturedFailure, CapturedOutput, Noted, run_captured};
+pub use crate::captured::{Noted, NotedFailure};
 use crate::commands::Arguments;
 pub use crate::commands::robot::{
     IsInterrupted, Reply, RobotHandle, RobotOptions, Stopper, TelemetryReport,
 };
+pub use crate::commands::sweep::map::MapQuantity;
 pub use crate::experiments::Experiment;
-pub use crate::exports::{NewFront, NewPicture, ResultsFolder, check_new_file};
+pub use crate::exports::{
+    NewFront, NewMap, NewPicture, NewPlaylist, ResultsFolder, check_new_file, shard_of_job_array,
+};
 use crate::failure::BAD_INPUT;
 use crate::output::Output;
+pub use crate::picture_file::FigureWidth;
 
 /// Runs the command that these words name, the program's own name first, and gives its exit status: 0 done, 1 tried and failed,
 /// 2 bad usage or bad input. It prints on this process's standard output and standard error, and may take over its Ctrl-C.

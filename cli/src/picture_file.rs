@@ -10,8 +10,11 @@ use crate::raster::{pdf, png};
 
 /// Width of a figure in print.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-pub(crate) enum FigureWidth {
-    // Not doc comments: clap would print them, and spread each option of the command over several lines.
+#[expect(
+    missing_docs,
+    reason = "clap would print them, and spread each option of the command over several lines"
+)]
+pub enum FigureWidth {
     // One column of a journal.
     #[value(name = "85")]
     Column,
@@ -39,7 +42,7 @@ impl FigureWidth {
 pub(crate) struct FigureOptions {
     /// Width of a figure in print, mm: one column of a journal or both; 170 if left out
     #[arg(long, value_name = "MM", value_enum)]
-    width: Option<FigureWidth>,
+    pub(crate) width: Option<FigureWidth>,
 }
 
 impl FigureOptions {

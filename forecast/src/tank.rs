@@ -1,5 +1,7 @@
 //! Number of cycles until a swimmer meets a wall of its tank.
 
+use std::str::FromStr;
+
 use nalgebra::Vector2;
 use swimmer_model::{Gait, Model, Pose, Swimmer, trajectory};
 
@@ -13,6 +15,26 @@ pub struct Tank {
     pub length: f64,
     /// Along y \[m\].
     pub width: f64,
+}
+
+impl FromStr for Tank {
+    type Err = String;
+
+    /// Reads length and width in metres, as `1.0x0.6`.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let sides = text.split_once(['x', '×']).map(|(length, width)| {
+            let number = |text: &str| f64::from_str(text.trim().trim_end_matches('m').trim());
+            (number(length), number(width))
+        });
+        match sides {
+            Some((Ok(length), Ok(width)))
+                if length > 0.0 && width > 0.0 && length.is_finite() && width.is_finite() =>
+            {
+                Ok(Self { length, width })
+            }
+            _ => Err("write length and width in metres, as 1.0x0.6".to_owned()),
+        }
+    }
 }
 
 impl Tank {
@@ -254,5 +276,15 @@ mod tests {
             width: 10.0,
         };
         assert_eq!(until_wall(&model, &still, &wide, &Pose::identity()), None);
+    }
+
+    #[test]
+    fn tanks_are_read() {
+        let read = |text: &str| text.parse().map(|tank: Tank| (tank.length, tank.width));
+        assert_eq!(read("1.0x0.6"), Ok((1.0, 0.6)));
+        assert_eq!(read("2 m × 1 m"), Ok((2.0, 1.0)));
+        for text in ["1.0", "x", "0x1", "1x-1", "1xnan", "axb", "1x2x3", "infx1"] {
+            assert!(read(text).is_err(), "{text}");
+        }
     }
 }

@@ -1,12 +1,13 @@
 //! Motion plans: gaits of one family that lead to a target one after the other.
 
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 
 use forecast::{Family, PlanError, PlanRequest, Scaled, Servos, Tank, check_ends, plan};
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 use swimmer_files::{
-    AnyGait, GaitFile, GaitSpec, Playlist, PlaylistStep, SwimmerFile, SwimmerHash,
+    AnyGait, GaitFile, GaitSpec, Playlist, PlaylistStep, SwimmerFile, SwimmerHash, parse_angle,
 };
 use swimmer_model::{Gait as _, Link, Pose};
 
@@ -59,6 +60,35 @@ pub struct Target {
     /// Heading \[rad\]; `None` for any, at the start for 0.
     #[serde(default)]
     pub heading_rad: Option<f64>,
+}
+
+impl FromStr for Target {
+    type Err = String;
+
+    /// Reads `X,Y` or `X,Y,ANGLE`: metres, and an angle with its unit.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let bad = || format!("`{text}` is no place: give X,Y or X,Y,ANGLE, as 0.2,-0.1,90deg");
+        let parts: Vec<&str> = text.split(',').map(str::trim).collect();
+        let metres = |part: &str| {
+            let number: f64 = part.parse().map_err(|_| bad())?;
+            if number.is_finite() {
+                Ok(number)
+            } else {
+                Err(bad())
+            }
+        };
+        let (x, y, heading) = match parts[..] {
+            [x, y] => (x, y, None),
+            [x, y, heading] => (x, y, Some(heading)),
+            _ => return Err(bad()),
+        };
+        let heading = heading.map(|text| parse_angle(text).map_err(|error| error.to_string()));
+        Ok(Self {
+            heading_rad: heading.transpose()?,
+            x_m: metres(x)?,
+            y_m: metres(y)?,
+        })
+    }
 }
 
 /// The quickest plan found. The JSON document of `swimmer plan`.

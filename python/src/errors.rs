@@ -3,6 +3,7 @@
 use operations::{Error as OperationError, ErrorKind};
 use pyo3::exceptions::PyException;
 use pyo3::prelude::*;
+use swimmer_command::NotedFailure;
 use swimmer_files::FileError;
 
 pyo3::create_exception!(
@@ -47,6 +48,16 @@ pub(crate) fn of_operation(error: OperationError) -> PyErr {
         });
     }
     exception
+}
+
+/// Exception of a failed call, after whose reason come the messages that were before it.
+pub(crate) fn of_reply(failure: NotedFailure) -> PyErr {
+    let NotedFailure { mut error, notes } = failure;
+    for note in notes {
+        error.message.push('\n');
+        error.message.push_str(&note);
+    }
+    of_operation(error)
 }
 
 /// A message with the command's options as keywords: `max_angle` for `--max-angle`, `swimmer.atlas(starts=…)` for

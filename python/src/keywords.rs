@@ -3,16 +3,20 @@
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use forecast::Tank;
 use operations::Context;
 use operations::bounds::BoundsRequest;
 use operations::fit_file::FitSource;
 use operations::optimize::robust::{self, Statistic};
 use operations::optimize::timing;
+use operations::plan::Target;
+use operations::sweep::field;
 use operations::tracks::Recording;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 use pythonize::depythonize;
-use swimmer_command::check_new_file;
+use sweep::Field;
+use swimmer_command::{FigureWidth, check_new_file};
 use swimmer_files::{JointName, SwimmerFile, parse_angle, parse_rate};
 
 use crate::arguments::SwimmerArgument;
@@ -68,6 +72,28 @@ impl<'py> Given<'_, 'py> {
         let numbers = self.items()?;
         let numbers = numbers.iter().map(|number| number.extract().ok());
         numbers.collect::<Option<Vec<f64>>>()?.try_into().ok()
+    }
+
+    /// Value of a type that reads its numbers as a text: that text, or a sequence of numbers.
+    fn of_numbers<T: FromStr<Err = String>>(
+        &self,
+        counts: &[usize],
+        separator: &str,
+        form: &str,
+    ) -> PyResult<T> {
+        let text = if let Ok(text) = self.value.extract::<String>() {
+            text
+        } else {
+            let numbers = self.items().unwrap_or_default();
+            let numbers = numbers.iter().map(|number| number.extract().ok());
+            let numbers = numbers.collect::<Option<Vec<f64>>>();
+            let numbers = numbers.filter(|numbers| counts.contains(&numbers.len()));
+            let numbers = numbers.ok_or_else(|| self.refused(form))?;
+            let texts = numbers.iter().map(|number| format!("{number:?}"));
+            texts.collect::<Vec<_>>().join(separator)
+        };
+        text.parse()
+            .map_err(|problem: String| self.refused(&problem))
     }
 
     /// Number of radians, or a text with its unit, above zero.
@@ -299,9 +325,77 @@ impl<'py> Keywords<'py> {
         })
     }
 
+    /// Text that a function reads.
+    pub(crate) fn parsed_by<T>(
+        &self,
+        name: &str,
+        parse: impl Fn(&str) -> Result<T, String>,
+    ) -> PyResult<Option<T>> {
+        self.read(name, |given| {
+            let text = given.extract::<String>("give a text")?;
+            parse(&text).map_err(|problem| given.refused(&problem))
+        })
+    }
+
+    /// Place \[m\], with or without a heading \[rad\].
+    pub(crate) fn place(&self, name: &str) -> PyResult<Option<Target>> {
+        let form =
+            "give (x, y) in metres or (x, y, heading), as (0.2, 0.1, 1.57) or \"0.2,0.1,90deg\"";
+        self.read(name, |given| given.of_numbers(&[2, 3], ",", form))
+    }
+
+    /// Length and width of a tank \[m\].
+    pub(crate) fn tank(&self, name: &str) -> PyResult<Option<Tank>> {
+        let form = "give length and width in metres, as (1.6, 1.2) or \"1.6x1.2\"";
+        self.read(name, |given| given.of_numbers(&[2], "x", form))
+    }
+
+    /// Values on axes of a sweep.
+    pub(crate) fn axis_values(&self, name: &str) -> PyResult<Vec<(Field, f64)>> {
+        let form = "give a value for each axis, as {\"drag.chi\": 2}";
+        let values = self.read(name, |given| {
+            let items = given.value.call_method0("items");
+            let items = items.and_then(|items| items.try_iter()?.collect::<PyResult<Vec<_>>>());
+            let items = items.map_err(|_| given.refused(form))?;
+            let one = |item: Bound<'py, PyAny>| {
+                let (axis, value): (String, Bound<'py, PyAny>) =
+                    item.extract().map_err(|_| given.refused(form))?;
+                let axis = field(&axis).map_err(|problem| given.refused(&problem))?;
+                let number = match value.extract::<f64>() {
+                    Ok(number) => Some(number),
+                    Err(_) => value
+                        .extract::<String>()
+                        .ok()
+                        .and_then(|text| axis.parse(&text)),
+                };
+                let number = number.filter(|number| number.is_finite());
+                let invalid = || given.refused(&format!("that is no value of {axis}"));
+                Ok((axis, number.ok_or_else(invalid)?))
+            };
+            items.into_iter().map(one).collect::<PyResult<Vec<_>>>()
+        })?;
+        Ok(values.unwrap_or_default())
+    }
+
     /// Path.
     pub(crate) fn path(&self, name: &str) -> PyResult<Option<PathBuf>> {
         self.read(name, |given| given.extract("give a path"))
+    }
+
+    /// Width in print of the figure that another keyword names.
+    pub(crate) fn width(&self, figure: &str) -> PyResult<Option<FigureWidth>> {
+        if !self.has(figure)? {
+            let alone = format!("this is the width of a figure: also give {figure}");
+            self.refuse("width", &alone)?;
+        }
+        self.read("width", |given| {
+            let form = "give 85 for one column of a journal, or 170 for both";
+            match given.extract::<u32>(form)? {
+                85 => Ok(FigureWidth::Column),
+                170 => Ok(FigureWidth::Page),
+                _ => Err(given.refused(form)),
+            }
+        })
     }
 
     /// Path at which a new file may be written.

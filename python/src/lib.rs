@@ -1,7 +1,7 @@
-//! `swimmer._swimmer`, what the Python package `swimmer` stands on: the model over arrays, gaits, and the commands' answers.
+//! `swimmer._swimmer`, base of the Python package `swimmer`: the model over arrays, gaits, and the outputs of the operations.
 //!
-//! No physics and no schema of its own lives here. Numbers come from `swimmer-model`, files from `swimmer-files`, and an answer is
-//! the JSON document of the command line, from `swimmer_command`.
+//! No physics and no schema of its own lives here. Numbers come from `swimmer-model`, files from `swimmer-files`, and outputs from
+//! `operations` as the JSON documents of the command line. `swimmer_command` writes the commands' files and drives the robot.
 
 // The docs are Python's help, which shows no Markdown, and Python hands its arguments over by value.
 #![allow(clippy::doc_markdown, clippy::needless_pass_by_value)]
@@ -18,8 +18,10 @@ mod gait;
 mod keywords;
 mod operations;
 mod optimize;
+mod plan;
 mod robot;
 mod signals;
+mod sweep;
 mod swimmer;
 
 /// The extension module; `python/swimmer/_swimmer.pyi` says what is in it.
@@ -30,7 +32,7 @@ mod _swimmer {
     #[pymodule_export]
     use super::calibrate::{fit, survey};
     #[pymodule_export]
-    use super::commands::{run, run_captured};
+    use super::commands::run;
     #[pymodule_export]
     use super::errors::{BadInput, Error, Failed};
     #[pymodule_export]
@@ -44,7 +46,11 @@ mod _swimmer {
     #[pymodule_export]
     use super::optimize::{best_gait, passive_waveform, steer_gaits};
     #[pymodule_export]
+    use super::plan::to_target;
+    #[pymodule_export]
     use super::robot::{RobotLink, RobotSettings};
+    #[pymodule_export]
+    use super::sweep::{sweep_map, sweep_merge, sweep_plan, sweep_run, sweep_status};
     #[pymodule_export]
     use super::swimmer::Swimmer;
     #[pymodule_export]

@@ -55,7 +55,9 @@ pub(crate) fn simulate<'py>(
         played: played(&keywords)?,
     };
     let passive = passive(&keywords)?;
-    let picture = keywords.path("picture")?.map(NewPicture::new);
+    let width = keywords.width("picture")?;
+    let picture = keywords.path("picture")?;
+    let picture = picture.map(|path| NewPicture::new(path, width));
     let picture = picture.transpose().map_err(of_operation)?;
     let limit_cycle = keywords.new_file("output")?;
     let ((output, rows), notes) = compute(py, context(), move |context| {

@@ -119,6 +119,7 @@ const HEADINGS: [(&str, Heading); 3] = [
 
 /// The file of the farthest gaits, if one is requested.
 fn new_front(keywords: &Keywords<'_>) -> PyResult<Option<NewFront>> {
+    let width = keywords.width("front")?;
     let Some(path) = keywords.path("front")? else {
         return Ok(None);
     };
@@ -129,7 +130,7 @@ fn new_front(keywords: &Keywords<'_>) -> PyResult<Option<NewFront>> {
             )));
         }
     }
-    NewFront::new(&text_of(&path))
+    NewFront::new(&text_of(&path), width)
         .map(Some)
         .map_err(of_operation)
 }

@@ -8,8 +8,7 @@ use pythonize::pythonize;
 use serde::Serialize;
 use swimmer_command::{Reply, RobotHandle, RobotOptions, Stopper};
 
-use crate::commands::exception;
-use crate::errors::{BadInput, in_terms_of_python};
+use crate::errors::{BadInput, in_terms_of_python, of_reply};
 use crate::gait::Gait;
 use crate::keywords::Keywords;
 use crate::signals::Signals;
@@ -69,7 +68,7 @@ pub(crate) struct RobotLink {
 
 /// Value of a reply, with its messages.
 pub(crate) fn value<T>(reply: Reply<T>) -> PyResult<(T, Vec<String>)> {
-    let noted = reply.map_err(exception)?;
+    let noted = reply.map_err(of_reply)?;
     let notes = noted.notes.iter();
     let notes = notes.map(|note| in_terms_of_python(note)).collect();
     Ok((noted.value, notes))

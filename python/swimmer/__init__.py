@@ -14,7 +14,7 @@ Lengths are in metres, angles in radians; `70deg` is understood where a number i
 
 from . import experiment, optimize, sweep
 from ._commands import atlas, calibrate, certify, height_map, plan, simulate, tracks
-from ._run import Doubt
+from ._messages import Doubt
 from ._swimmer import BadInput, Error, Failed, Gait, Swimmer, __version__
 from .results import Atlas, Calibration, HeightMap, OptimalGait, Result, Simulation, Table, Trajectory
 from .robot import Pose, Robot, Telemetry

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import Literal
 
 from . import _swimmer
-from ._run import Run, Text, warn
+from ._messages import Text, warn
 from ._swimmer import Gait, Swimmer
 from .optimize import Angle
 from .results import Atlas, Calibration, HeightMap, OptimalGait, Result, Simulation, Trajectory
@@ -21,6 +21,7 @@ def simulate(
     knots: int | None = None,
     pulse_step: int | None = None,
     picture: Text | None = None,
+    width: Literal[85, 170] | None = None,
     passive: Literal["front", "back"] | None = None,
     stiffness: float | None = None,
     relaxation: float | None = None,
@@ -44,6 +45,8 @@ def simulate(
         Knots of the robot's table, and step of its timer [ns]; with `played`.
     picture : path, optional
         New file: snapshots along the way (.svg, .png, .pdf), or one cycle in motion (.gif).
+    width : {85, 170}, optional
+        Width of the snapshots in print [mm]: one column of a journal, or both; 170 unless given.
     passive : {"front", "back"}, optional
         Joint with a spring in place of a servo, which follows the other one.
     stiffness, relaxation : float, optional
@@ -78,6 +81,7 @@ def simulate(
             "knots": knots,
             "pulse_step": pulse_step,
             "picture": picture,
+            "width": width,
             "passive": passive,
             "stiffness": stiffness,
             "relaxation": relaxation,
@@ -492,28 +496,22 @@ def plan(
     >>> planned = sw.plan("robot", to=(0.2, 0.1), max_rate="200deg", max_angle="60deg", no_overlap=True)  # doctest: +SKIP
     >>> planned.steps.to_pandas()  # doctest: +SKIP
     """
-    with Run("plan") as run:
-        run.swimmer(swimmer)
-        run.options(
-            {
-                "to": _joined(to, ","),
-                "from_": _joined(from_, ","),
-                "tank": _joined(tank, "x"),
-                "margin": margin,
-                "gaits": gaits,
-                "shape": _joined(shape, ","),
-                "max_rate": max_rate,
-                "max_angle": max_angle,
-                "no_overlap": no_overlap,
-                "clearance": clearance,
-                "playable": playable,
-                "output": output,
-            }
-        )
-        return Result(run.document())
-
-
-def _joined(numbers: Sequence[float] | str | None, by: str) -> str | None:
-    if numbers is None or isinstance(numbers, str):
-        return numbers
-    return by.join(repr(float(number)) for number in numbers)
+    document, notes = _swimmer.plan(
+        swimmer,
+        {
+            "to": to,
+            "from_": from_,
+            "tank": tank,
+            "margin": margin,
+            "gaits": gaits,
+            "shape": shape,
+            "max_rate": max_rate,
+            "max_angle": max_angle,
+            "no_overlap": no_overlap,
+            "clearance": clearance,
+            "playable": playable,
+            "output": output,
+        },
+    )
+    warn(notes, stacklevel=3)
+    return Result(document)

@@ -24,10 +24,15 @@ __all__ = [
     "height_map",
     "optimize",
     "passive_waveform",
+    "plan",
     "run",
-    "run_captured",
     "simulate",
     "steer_gaits",
+    "sweep_map",
+    "sweep_merge",
+    "sweep_plan",
+    "sweep_run",
+    "sweep_status",
     "tracks",
 ]
 
@@ -754,11 +759,27 @@ def experiment_report(
 ) -> tuple[dict[str, Any], list[str]]:
     """Compares the gaits, and writes report.json and report.html."""
 
-def run_captured(words: Sequence[str | os.PathLike[str]]) -> tuple[str, list[str]]:
-    """The JSON document of a command, and the warnings that it gave.
+def plan(swimmer: Swimmer | str | os.PathLike[str], keywords: dict[str, Any]) -> tuple[dict[str, Any], list[str]]:
+    """Gaits that lead to a target one after the other: document and messages."""
 
-    On Ctrl-C this raises `KeyboardInterrupt` at once; what was being computed ends by itself and is dropped.
-    """
+def sweep_plan(
+    spec: str | os.PathLike[str], folder: str | os.PathLike[str]
+) -> tuple[dict[str, Any], list[str]]:
+    """Makes a plan of a spec."""
+
+def sweep_run(folder: str | os.PathLike[str], keywords: dict[str, Any]) -> tuple[dict[str, Any], list[str]]:
+    """Solves the designs of a shard that are not solved yet. Ctrl-C ends it after the blocks in work, and the same call goes on."""
+
+def sweep_status(folder: str | os.PathLike[str]) -> tuple[dict[str, Any], list[str]]:
+    """Progress of all shards."""
+
+def sweep_merge(
+    folder: str | os.PathLike[str], table: str | os.PathLike[str]
+) -> tuple[dict[str, Any], list[str]]:
+    """Writes all designs of a finished sweep as one Parquet table."""
+
+def sweep_map(folder: str | os.PathLike[str], keywords: dict[str, Any]) -> tuple[dict[str, Any], list[str]]:
+    """Maps a finished grid over two of its axes, and writes its files."""
 
 def run(words: Sequence[str]) -> int:
     """The whole `swimmer` command, the program's name first; gives its exit status."""

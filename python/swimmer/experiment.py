@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import _swimmer
-from ._run import Text, warn
+from ._messages import Text, warn
 from ._swimmer import Gait
 from .optimize import Angle
 from .results import Result

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Literal, TypeAlias
 
 from . import _swimmer
-from ._run import Text, warn
+from ._messages import Text, warn
 from ._swimmer import Swimmer
 from .results import OptimalGait, Result
 
@@ -243,6 +243,7 @@ def speed(
     gain: Sequence[float] | None = None,
     over: Literal["worst", "mean"] | None = None,
     front: Text | None = None,
+    width: Literal[85, 170] | None = None,
 ) -> OptimalGait:
     """Finds the fastest gait of servos with limited rates: most net displacement per time, without net rotation.
 
@@ -266,6 +267,8 @@ def speed(
         Uncertainty to design for, as in `displacement`.
     front : path, optional
         New file (.svg, .png, .pdf or .csv): displacement per cycle against speed, of the farthest gaits in shorter and longer periods.
+    width : {85, 170}, optional
+        Width of that figure in print [mm]: one column of a journal, or both; 170 unless given.
 
     Returns
     -------

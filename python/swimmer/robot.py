@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from types import TracebackType
 from typing import Any, Self
 
-from ._run import Text, warn
+from ._messages import Text, warn
 from ._swimmer import BadInput, Gait, RobotLink, RobotSettings, Swimmer
 from .optimize import Angle
 from .results import Result

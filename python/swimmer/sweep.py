@@ -9,11 +9,11 @@
 12
 """
 
-import os
 from collections.abc import Mapping
-from typing import Literal
+from typing import Any, Literal
 
-from ._run import Run, Text
+from . import _swimmer
+from ._messages import Text, warn
 from .results import Result
 
 __all__ = ["map", "merge", "plan", "run", "status"]
@@ -47,22 +47,20 @@ def plan(spec: Text, *, output: Text) -> Result:
     >>> sw.sweep.plan("small.toml", output="small").tasks  # doctest: +SKIP
     12
     """
-    with Run("sweep", "plan", os.fspath(spec)) as run:
-        run.options({"output": output})
-        return Result(run.document())
+    return _result(_swimmer.sweep_plan(spec, output))
 
 
 def run(folder: Text, *, shard: str | None = None, threads: int | None = None) -> Result:
     """Solves the designs of a plan that are not solved yet.
 
-    After Ctrl-C the finished blocks stay, and the same call goes on.
+    Ctrl-C ends it after the blocks in work. Finished blocks stay, and the same call goes on.
 
     Parameters
     ----------
     folder : path
         Folder of the plan.
     shard : str, optional
-        Part of the blocks, as ``2/7``.
+        Part of the blocks, as ``2/7``; within a job array of Slurm the array's task unless given.
     threads : int, optional
         Number of threads, one for each core unless given.
 
@@ -84,9 +82,7 @@ def run(folder: Text, *, shard: str | None = None, threads: int | None = None) -
     >>> sw.sweep.run("small", shard="1/2").failed  # doctest: +SKIP
     0
     """
-    with Run("sweep", "run", os.fspath(folder)) as run:
-        run.options({"shard": shard, "threads": threads})
-        return Result(run.document())
+    return _result(_swimmer.sweep_run(folder, {"shard": shard, "threads": threads}))
 
 
 def status(folder: Text) -> Result:
@@ -113,8 +109,7 @@ def status(folder: Text) -> Result:
     >>> sw.sweep.status("small").done  # doctest: +SKIP
     12
     """
-    with Run("sweep", "status", os.fspath(folder)) as run:
-        return Result(run.document())
+    return _result(_swimmer.sweep_status(folder))
 
 
 def merge(folder: Text, *, output: Text) -> Result:
@@ -145,9 +140,7 @@ def merge(folder: Text, *, output: Text) -> Result:
     >>> sw.sweep.merge("small", output="small.parquet").certified  # doctest: +SKIP
     12
     """
-    with Run("sweep", "merge", os.fspath(folder)) as run:
-        run.options({"output": output})
-        return Result(run.document())
+    return _result(_swimmer.sweep_merge(folder, output))
 
 
 def map(
@@ -155,7 +148,7 @@ def map(
     *,
     across: str | None = None,
     up: str | None = None,
-    at: Mapping[str, float] | None = None,
+    at: Mapping[str, float | str] | None = None,
     quantity: Literal[
         "displacement",
         "efficiency",
@@ -167,6 +160,7 @@ def map(
         "pareto",
     ] = "displacement",
     output: Text | None = None,
+    width: Literal[85, 170] | None = None,
     export: Text | None = None,
 ) -> Result:
     """Maps a finished grid over two of its axes.
@@ -177,12 +171,14 @@ def map(
         Folder of the plan.
     across, up : str, optional
         Names of the axes.
-    at : mapping of str to float, optional
-        Values of other axes, as ``{"drag.chi": 2}``; the nearest ones are taken.
+    at : mapping of str to float or str, optional
+        Values of other axes, as ``{"drag.chi": 2, "objective": "speed"}``; the nearest ones are taken.
     quantity : str, optional
         ``displacement``, ``efficiency``, ``speed``, ``amplitude``, ``rotation``, ``lateral``, ``structure`` or ``pareto``.
     output : path, optional
         New picture.
+    width : {85, 170}, optional
+        Width of the picture in print [mm]: one column of a journal, or both; 170 unless given.
     export : path, optional
         New file (.json) with the numbers.
 
@@ -203,16 +199,20 @@ def map(
     >>> import swimmer as sw
     >>> sw.sweep.map("small", across="sphere.radius", up="drag.chi", output="map.svg")  # doctest: +SKIP
     """
-    with Run("sweep", "map", os.fspath(folder)) as run:
-        run.options(
-            {
-                "across": across,
-                "up": up,
-                "quantity": quantity,
-                "output": output,
-                "export": export,
-            }
-        )
-        for axis, value in (at or {}).items():
-            run.words(f"--at={axis}={float(value)!r}")
-        return Result(run.document())
+    keywords = {
+        "across": across,
+        "up": up,
+        "at": at,
+        "quantity": quantity,
+        "output": output,
+        "width": width,
+        "export": export,
+    }
+    return _result(_swimmer.sweep_map(folder, keywords))
+
+
+def _result(reply: tuple[dict[str, Any], list[str]]) -> Result:
+    """The document of a reply; its messages become warnings at the caller of the public function."""
+    document, notes = reply
+    warn(notes, stacklevel=4)
+    return Result(document)

@@ -65,6 +65,9 @@ MISTAKES: dict[str, tuple[Callable[[], object], str]] = {
     "sine without joint": (lambda: sw.simulate("robot", "sine:1"), 'passive="front"'),
     "limit cycle without joint": (lambda: sw.simulate("robot", "circle:1", output="mine.gait"), "^output is the limit cycle .* passive,"),
     "picture of another kind": (lambda: sw.simulate("robot", "circle:1", picture="way.txt"), "way.txt"),
+    "width without picture": (lambda: sw.simulate("robot", "circle:1", width=85), "width=85: .*also give picture"),
+    "width of an animation": (lambda: sw.simulate("robot", "circle:1", picture="way.gif", width=85), "width is for figures"),
+    "width": (lambda: sw.simulate("robot", "circle:1", picture="way.svg", width=100), "width=100: give 85"),  # type: ignore[arg-type]
     "swimmer": (lambda: sw.simulate("purcel", "circle:1"), "purcel"),
     "swimmer that is a number": (lambda: sw.simulate(3, "circle:1"), "swimmer=3: give a Swimmer"),  # type: ignore[arg-type]
     "closed form": (lambda: sw.simulate("purcell", "circel:1"), "did you mean circle:1"),
@@ -81,6 +84,14 @@ MISTAKES: dict[str, tuple[Callable[[], object], str]] = {
     # plan
     "target": (lambda: sw.plan("robot", to="there", max_rate=3.0), "to"),
     "target in degrees": (lambda: sw.plan("robot", to=(0.2, 0.1, 90.0), max_rate=3.0), r"90\.0deg"),
+    "target with a word": (lambda: sw.plan("robot", to=(0.2, "wide"), max_rate=3.0), "to=.*give .x, y. in metres"),  # type: ignore[arg-type]
+    "start": (lambda: sw.plan("robot", to=(0.2, 0.1), from_=(0.2,), max_rate=3.0), r"from_=\(0\.2,\): give"),
+    "tank": (lambda: sw.plan("robot", to=(0.2, 0.1), tank=(1.0, -1.0), max_rate=3.0), "tank=.*length and width"),
+    "margin": (lambda: sw.plan("robot", to=(0.2, 0.1), margin=-1.0, max_rate=3.0), r"margin=-1\.0: give a length"),
+    "rate of a plan": (lambda: sw.plan("robot", to=(0.2, 0.1)), "give max_rate or playable=True"),
+    "shape of a folder": (lambda: sw.plan("robot", to=(0.2, 0.1), gaits=".", shape=(0.0, 0.0), max_rate=3.0), "shape=.*leave it out"),
+    "gaits of a plan": (lambda: sw.plan("robot", to=(0.2, 0.1), gaits=".", max_rate=3.0), "forward.gait"),
+    "playlist": (lambda: sw.plan("robot", to=(0.2, 0.1), max_rate=3.0, output="kept"), "kept exists"),
     # calibrate and tracks
     "level": (lambda: sw.calibrate("campaign.toml", level=95.0), r"level=95\.0: give a share between 0 and 1"),
     "nuisance": (lambda: sw.calibrate("campaign.toml", fit_also="luck"), "fit_also='luck': choose from ct, offsets"),
@@ -111,7 +122,15 @@ MISTAKES: dict[str, tuple[Callable[[], object], str]] = {
     "no report": (lambda: sw.experiment.report("missing.toml"), "missing"),
     # sweep
     "missing sweep": (lambda: sw.sweep.plan("missing.toml", output="small"), "missing.toml"),
-    "shard": (lambda: sw.sweep.run("small", shard="three"), "shard"),
+    "shard": (lambda: sw.sweep.run("small", shard="three"), "shard='three': .*2/7"),
+    "threads": (lambda: sw.sweep.run("small", threads=0), "threads=0: give a whole number from 1 to 1024"),
+    "axis": (lambda: sw.sweep.map("small", up="chi"), "up='chi': an axis is one of .*drag.chi"),
+    "axis of a value": (lambda: sw.sweep.map("small", at={"chi": 2}), "at=.*an axis is one of"),
+    "value of an axis": (lambda: sw.sweep.map("small", at={"drag.chi": "much"}), "at=.*no value of drag.chi"),
+    "values of axes": (lambda: sw.sweep.map("small", at="drag.chi=2"), "at=.*give a value for each axis"),  # type: ignore[arg-type]
+    "quantity": (lambda: sw.sweep.map("small", quantity="luck"), "quantity='luck': choose"),  # type: ignore[arg-type]
+    "picture of a map": (lambda: sw.sweep.map("small", output="map.gif"), "map.gif"),
+    "table": (lambda: sw.sweep.merge("small", output="kept"), "kept exists"),
     "no plan": (lambda: sw.sweep.status("small"), "small"),
     "table of no plan": (lambda: sw.sweep.merge("small", output="small.parquet"), "small"),
     "map of no plan": (lambda: sw.sweep.map("small"), "small"),

@@ -118,8 +118,8 @@ def test_files_of_ours_are_named_shortly(robot: sw.Swimmer, purcell: sw.Swimmer)
     [
         (sw.simulate, ["simulate"], {"trajectory"}),
         (sw.certify, ["certify"], set()),
-        (sw.atlas, ["atlas"], {"output"}),
-        (sw.height_map, ["height-map"], {"output"}),
+        (sw.atlas, ["atlas"], {"output", "width"}),
+        (sw.height_map, ["height-map"], {"output", "width"}),
         (sw.calibrate, ["calibrate"], set()),
         (sw.tracks, ["tracks"], set()),
         (sw.optimize.displacement, ["optimize", "displacement"], {"output"}),

@@ -110,7 +110,11 @@ import os, signal, threading, time
 import swimmer as sw
 signal.signal(signal.SIGINT, signal.default_int_handler)
 robot = sw.Robot("twin", log={str(log)!r})
-threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+def interrupt():
+    while not robot.is_moving:
+        time.sleep(0.01)
+    os.kill(os.getpid(), signal.SIGINT)
+threading.Thread(target=interrupt).start()
 try:
     robot.play("circle:60deg", cycles=None)
 except KeyboardInterrupt:

@@ -2,6 +2,9 @@
 
 import importlib
 import json
+import shutil
+import subprocess
+import sysconfig
 from pathlib import Path
 
 import pytest
@@ -67,6 +70,19 @@ def test_a_map_is_drawn_and_exported(folder: Path, tmp_path: Path) -> None:
     assert numbers["axes"][1]["values"] == [1.8, 2.0]
     # Keys are whole numbers, as in the table.
     assert all(type(one["key"]) is int for one in numbers["pareto"])
+
+
+def test_outputs_are_those_of_the_command(folder: Path) -> None:
+    command = shutil.which("swimmer", path=sysconfig.get_path("scripts"))
+    assert command is not None
+    axes = ["--across=sphere.radius", "--at=drag.chi=2.0"]
+    for words, output in (
+        (["status"], sw.sweep.status(folder)),
+        (["map", *axes], sw.sweep.map(folder, across="sphere.radius", at={"drag.chi": 2})),
+    ):
+        line = [command, "sweep", words[0], str(folder), *words[1:], "--json"]
+        printed = subprocess.run(line, check=True, capture_output=True).stdout
+        assert json.loads(printed) == output.to_dict()
 
 
 def test_what_is_wrong_is_said(folder: Path, tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 use std::fs::{self, OpenOptions};
 use std::io::Write as _;
 use std::path::Path;
+use std::str::FromStr;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
@@ -36,6 +37,19 @@ impl Shard {
     }
 }
 
+impl FromStr for Shard {
+    type Err = String;
+
+    /// Reads the number of the shard and the number of shards, as `2/7`.
+    fn from_str(text: &str) -> Result<Self, String> {
+        text.split_once('/')
+            .and_then(|(number, of)| Self::new(number.parse().ok()?, of.parse().ok()?))
+            .ok_or_else(|| {
+                "write the shard and the number of shards, as 2/7 (from 1/7 to 7/7)".to_owned()
+            })
+    }
+}
+
 impl std::fmt::Display for Shard {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{}/{}", self.number, self.of)
@@ -51,7 +65,7 @@ pub struct Running<'a> {
     pub threads: usize,
     /// Clock \[s\] for the computation time per design.
     pub seconds: &'a (dyn Fn() -> f64 + Sync),
-    /// Callback with the progress after each block.
+    /// Callback with the progress after each block. It may unwind to end the run; finished blocks stay.
     pub watch: &'a (dyn Fn(Ran) + Sync),
 }
 
@@ -125,10 +139,16 @@ pub fn run(plan: &Plan, folder: &Path, running: &Running<'_>) -> Result<Ran, Swe
         }
     };
     std::thread::scope(|scope| {
-        for _ in 1..running.threads.clamp(1, 1024) {
-            scope.spawn(worker);
-        }
+        let others: Vec<_> = (1..running.threads.clamp(1, 1024))
+            .map(|_| scope.spawn(worker))
+            .collect();
         worker();
+        for other in others {
+            // A callback may end the run by unwinding, and its caller recognises that by the payload.
+            if let Err(panic) = other.join() {
+                std::panic::resume_unwind(panic);
+            }
+        }
     });
     match state
         .into_inner()

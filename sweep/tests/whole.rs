@@ -1,7 +1,9 @@
 //! Sweeps from the spec to the table: identical bytes for every split, no lost and no incomplete part.
 
 use std::fs;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use parquet::file::reader::{FileReader as _, SerializedFileReader};
 use parquet::record::RowAccessor as _;
@@ -68,6 +70,46 @@ fn the_table_does_not_depend_on_shards_and_threads() {
             table(GRID, shards, threads) == whole,
             "{shards} shards, {threads} threads"
         );
+    }
+}
+
+/// Payload of a callback that ends a run.
+struct Enough;
+
+#[test]
+fn a_callback_ends_a_run_and_finished_blocks_stay() {
+    let plan = plan(GRID);
+    for threads in [1, 3] {
+        let folder = tempfile::tempdir().unwrap();
+        let calls = AtomicU64::new(0);
+        let running = Running {
+            shard: Shard::WHOLE,
+            threads,
+            seconds: &|| 0.0,
+            watch: &|_| {
+                calls.fetch_add(1, Ordering::Relaxed);
+                resume_unwind(Box::new(Enough));
+            },
+        };
+        let ended = catch_unwind(AssertUnwindSafe(|| run(&plan, folder.path(), &running)));
+        // The payload of any thread reaches the caller.
+        assert!(ended.unwrap_err().is::<Enough>());
+        let blocks = calls.into_inner();
+        assert!((1..=threads as u64).contains(&blocks), "{blocks} blocks");
+        let status = status(&plan, folder.path()).unwrap();
+        assert_eq!(status.blocks_done, blocks);
+        assert!(blocks < status.blocks);
+        let rest = ran(&plan, folder.path(), Shard::WHOLE, threads);
+        assert_eq!((rest.skipped, rest.tasks), (blocks, plan.tasks()));
+    }
+}
+
+#[test]
+fn shards_are_read() {
+    assert_eq!("2/7".parse(), Ok(Shard::new(2, 7).unwrap()));
+    for text in ["", "2", "0/7", "8/7", "two/7", "1/2/3"] {
+        let shard: Result<Shard, String> = text.parse();
+        assert!(shard.is_err(), "{text}");
     }
 }
 

@@ -3,14 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use forecast::{Family, Tank};
-pub(crate) use operations::plan::Target;
-use operations::plan::{self, Request};
+use operations::plan::{self, Request, Target};
 use operations::{Files, SwimmerSource};
 use swimmer_files::SwimmerFile;
 
 use super::optimize::steer::Steer;
-use super::robot::preflight::tank;
-use crate::arguments::{angle, length};
+use crate::arguments::length;
 use crate::context::perform;
 use crate::failure::Outcome;
 use crate::new_file::may_be_written;
@@ -35,13 +33,18 @@ pub(crate) struct Plan {
     #[command(flatten)]
     steer: Steer,
     /// Where to go, metres; with a heading or without
-    #[arg(long, value_name = "X,Y[,ANGLE]", value_parser = target, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y[,ANGLE]", allow_hyphen_values = true)]
     to: Target,
     /// Where the swimmer is
-    #[arg(long, value_name = "X,Y[,ANGLE]", value_parser = target, allow_hyphen_values = true, default_value = "0,0,0")]
+    #[arg(
+        long,
+        value_name = "X,Y[,ANGLE]",
+        allow_hyphen_values = true,
+        default_value = "0,0,0"
+    )]
     from: Target,
     /// Stay within the walls of this tank: length x width, m
-    #[arg(long, value_name = "LENGTHxWIDTH", value_parser = tank)]
+    #[arg(long, value_name = "LENGTHxWIDTH")]
     tank: Option<Tank>,
     /// Come no nearer to a wall than this, m
     #[arg(long, value_name = "LENGTH_M", value_parser = length, default_value = "0.005")]
@@ -52,29 +55,6 @@ pub(crate) struct Plan {
     /// Write the plan as a playlist, and its gaits next to it
     #[arg(short, long, value_name = "PLAYLIST")]
     output: Option<PathBuf>,
-}
-
-pub(crate) fn target(text: &str) -> Result<Target, String> {
-    let bad = || format!("`{text}` is no place: give X,Y or X,Y,ANGLE, as 0.2,-0.1,90deg");
-    let parts: Vec<&str> = text.split(',').map(str::trim).collect();
-    let metres = |part: &str| {
-        let number: f64 = part.parse().map_err(|_| bad())?;
-        if number.is_finite() {
-            Ok(number)
-        } else {
-            Err(bad())
-        }
-    };
-    let (x, y, heading_rad) = match parts[..] {
-        [x, y] => (x, y, None),
-        [x, y, heading] => (x, y, Some(angle(heading)?)),
-        _ => return Err(bad()),
-    };
-    Ok(Target {
-        x_m: metres(x)?,
-        y_m: metres(y)?,
-        heading_rad,
-    })
 }
 
 impl Plan {
@@ -101,7 +81,10 @@ impl Plan {
 }
 
 /// Writes the playlist, and the gaits next to it.
-fn write_playlist(path: &Path, found: &mut plan::Output) -> Outcome {
+///
+/// # Errors
+/// The path names no file, a gait file exists, or the disk refuses.
+pub(crate) fn write_playlist(path: &Path, found: &mut plan::Output) -> Outcome {
     let playlist = found.name_files(path)?;
     for step in &found.steps {
         let file = path.with_file_name(&step.gait);

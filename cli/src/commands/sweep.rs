@@ -1,6 +1,6 @@
 //! `swimmer sweep`: the best gait of many designs, on every core of one machine or of many.
 
-mod map;
+pub(crate) mod map;
 mod picture;
 mod plan;
 mod progress;
@@ -42,7 +42,7 @@ pub(crate) struct Run {
     /// The folder of the plan
     folder: PathBuf,
     /// Only this share of the blocks, as 2/7: every seventh, from the second on
-    #[arg(long, value_name = "I/N", value_parser = shard)]
+    #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
     /// Number of threads; by default the number of cores
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -107,17 +107,11 @@ impl Merge {
     }
 }
 
-/// `I/N` on the command line.
-fn shard(text: &str) -> Result<Shard, String> {
-    text.split_once('/')
-        .and_then(|(number, of)| Shard::new(number.parse().ok()?, of.parse().ok()?))
-        .ok_or_else(|| {
-            "write the shard and the number of shards, as 2/7 (from 1/7 to 7/7)".to_owned()
-        })
-}
-
-/// The shard that Slurm's job array gives this process; none outside of one.
-fn of_environment() -> Outcome<Option<Shard>> {
+/// Shard that Slurm's job array gives this process. Returns `None` outside of a job array.
+///
+/// # Errors
+/// The tasks of the job array are not numbered as shards.
+pub(crate) fn of_environment() -> Outcome<Option<Shard>> {
     let number = |name: &str| {
         let Some(text) = std::env::var_os(name) else {
             return Ok(None);

@@ -62,3 +62,17 @@ fn a_plan_meets_its_target_and_names_its_files() {
     assert_eq!(playlist.steps.len(), output.steps.len());
     assert!((playlist.duration() - output.duration_s).abs() < 1e-9);
 }
+
+#[test]
+fn targets_are_read() {
+    let read = |text: &str| {
+        let target: Result<Target, String> = text.parse();
+        target.map(|target| (target.x_m, target.y_m, target.heading_rad))
+    };
+    assert_eq!(read("0.2, -0.1"), Ok((0.2, -0.1, None)));
+    let half_turn = Some(180f64.to_radians());
+    assert_eq!(read("-1,0,180deg"), Ok((-1.0, 0.0, half_turn)));
+    for text in ["", "1", "1,", "inf,0", "1,nan", "1,2,90", "1,2,3,4", "1,2,"] {
+        assert!(read(text).is_err(), "{text}");
+    }
+}

@@ -12,10 +12,12 @@ use forecast::playlist::leads_to;
 use forecast::{Played, Servos, Tank, forecast, until_wall};
 use link_protocol::MAX_KNOTS;
 use nalgebra::Vector2;
+use operations::ErrorKind;
 use swimmer_files::{AnyGait, Bounds, GaitFile, Objective, SwimmerFile};
 use swimmer_model::{Gait as _, Model, Pose};
 
 use crate::arguments::{load_gait, model};
+use crate::captured::run_quietly;
 use crate::commands::optimize::steer::write_straight;
 use crate::commands::robot::table_of;
 use crate::failure::{Failure, Outcome};
@@ -124,16 +126,15 @@ impl<'a> Maker<'a> {
             all.extend(["--swimmer".into(), swimmer.into_os_string()]);
         }
         all.extend(["-o".into(), path.clone().into_os_string()]);
-        crate::run_captured(all).map_err(|refused| {
+        run_quietly(all).map_err(|error| {
             let text = format!(
                 "gait `{name}`: swimmer optimize {}: {}",
                 words.join(" "),
-                refused.reason
+                error.message
             );
-            if refused.bad_input {
-                Failure::BadInput(text)
-            } else {
-                Failure::Tried(text)
+            match error.kind {
+                ErrorKind::BadInput => Failure::BadInput(text),
+                ErrorKind::Failed => Failure::Tried(text),
             }
         })?;
         let file = GaitFile::load(&path)?;

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use experiment::{Controller, Goal, Options, Request};
 use forecast::{Family, Planner, Step, Tank};
 use nalgebra::Vector2;
+use operations::plan::Target;
 use swimmer_files::SwimmerFile;
 use swimmer_model::{Gait as _, Pose};
 
@@ -15,11 +16,10 @@ use self::output::{GoOutput, RunOf};
 use super::access::Access;
 use super::bench::Bench;
 use super::outputs::print_refusal;
-use super::preflight::tank;
 use super::tracking::Tracked;
 use crate::arguments::{angle, length, load_swimmer};
 use crate::commands::optimize::steer::{Steer, write_straight};
-use crate::commands::plan::{Target, family_in, family_of_search, target};
+use crate::commands::plan::{family_in, family_of_search};
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
 use crate::new_folder::NewFolder;
@@ -40,10 +40,20 @@ const SEED: u64 = 1;
 #[derive(Debug, clap::Args)]
 pub(super) struct Go {
     /// Pose to reach, metres; with a heading or without
-    #[arg(long, value_name = "X,Y[,ANGLE]", value_parser = target, allow_hyphen_values = true, required_unless_present = "hold")]
+    #[arg(
+        long,
+        value_name = "X,Y[,ANGLE]",
+        allow_hyphen_values = true,
+        required_unless_present = "hold"
+    )]
     to: Option<Target>,
     /// Pose to pass before, as close as the target; may be given several times
-    #[arg(long, value_name = "X,Y[,ANGLE]", value_parser = target, allow_hyphen_values = true, requires = "to")]
+    #[arg(
+        long,
+        value_name = "X,Y[,ANGLE]",
+        allow_hyphen_values = true,
+        requires = "to"
+    )]
     via: Vec<Target>,
     /// Swim forward and hold this heading, instead of a target
     #[arg(long, value_name = "ANGLE", value_parser = angle, allow_hyphen_values = true, conflicts_with_all = ["to", "via"])]
@@ -52,7 +62,7 @@ pub(super) struct Go {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000), default_value = "20")]
     cycles: u32,
     /// Inner measures of the tank, m
-    #[arg(long, value_name = "LENGTHxWIDTH", value_parser = tank)]
+    #[arg(long, value_name = "LENGTHxWIDTH")]
     tank: Tank,
     /// Come no nearer to a wall than this, m
     #[arg(long, value_name = "LENGTH_M", value_parser = length, default_value = "0.01")]

@@ -20,7 +20,7 @@ use super::rest::{nothing_under_way, stopped_on_failure, wait_for_rest};
 use super::tank_cameras::TankCameras;
 use super::tracking::{Tracked, Tracking, Visible, port_s};
 use super::upload::{Prepared, upload};
-use crate::captured::{CapturedFailure, Noted, noted};
+use crate::captured::{Noted, NotedFailure, noted};
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
 use crate::recording::LiveAxes;
@@ -177,7 +177,7 @@ pub struct RobotHandle {
 pub type IsInterrupted = Box<dyn Fn() -> bool + Send + Sync>;
 
 /// Result of a call, with its messages.
-pub type Reply<T> = Result<Noted<T>, CapturedFailure>;
+pub type Reply<T> = Result<Noted<T>, NotedFailure>;
 
 impl RobotHandle {
     /// Connects. While a call waits it polls `is_interrupted`, and `true` stops the robot.

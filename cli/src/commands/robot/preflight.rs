@@ -38,7 +38,7 @@ pub(super) struct Arguments {
 #[derive(Debug, clap::Args)]
 pub(super) struct TankOptions {
     /// Foretell when the swimmer meets a wall of this tank: length x width, m
-    #[arg(long, value_name = "LENGTHxWIDTH", value_parser = tank)]
+    #[arg(long, value_name = "LENGTHxWIDTH")]
     pub(super) tank: Option<Tank>,
     /// Where in the tank it starts: from its centre along length and width, m
     #[arg(long, value_name = "X,Y", value_parser = tank_position, requires = "tank", allow_hyphen_values = true, default_value = "0,0")]
@@ -416,21 +416,6 @@ impl fmt::Display for TankOutput {
     }
 }
 
-pub(crate) fn tank(text: &str) -> Result<Tank, String> {
-    let sides = text.split_once(['x', '×']).map(|(length, width)| {
-        let number = |text: &str| f64::from_str(text.trim().trim_end_matches('m').trim());
-        (number(length), number(width))
-    });
-    match sides {
-        Some((Ok(length), Ok(width)))
-            if length > 0.0 && width > 0.0 && length.is_finite() && width.is_finite() =>
-        {
-            Ok(Tank { length, width })
-        }
-        _ => Err("write length and width in metres, as 1.0x0.6".to_owned()),
-    }
-}
-
 fn tank_position(text: &str) -> Result<TankPosition, String> {
     let numbers = text
         .split_once(',')
@@ -449,13 +434,7 @@ mod tests {
     use swimmer_files::ServoFile;
 
     #[test]
-    fn tanks_and_places_are_read() {
-        let read = |text| tank(text).map(|tank| (tank.length, tank.width));
-        assert_eq!(read("1.0x0.6"), Ok((1.0, 0.6)));
-        assert_eq!(read("2 m × 1 m"), Ok((2.0, 1.0)));
-        for text in ["1.0", "x", "0x1", "1x-1", "1xnan", "axb", "1x2x3"] {
-            assert!(tank(text).is_err(), "{text}");
-        }
+    fn places_are_read() {
         assert_eq!(
             tank_position("0.1,-0.2"),
             Ok(TankPosition(Vector2::new(0.1, -0.2)))

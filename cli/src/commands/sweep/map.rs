@@ -13,7 +13,7 @@ use super::shown;
 use crate::failure::Outcome;
 use crate::new_file::may_be_written;
 use crate::output::{Output, document};
-use crate::picture_file::{FigureOptions, Kind};
+use crate::picture_file::{FigureOptions, FigureWidth, Kind};
 use crate::quantity::{Rows, Table};
 
 /// Draw a finished grid over two of its axes, with lines where the kind of gait changes
@@ -48,7 +48,7 @@ pub(crate) struct Map {
 
 /// Quantity of the map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum MapQuantity {
+pub enum MapQuantity {
     /// X/L of the best gait
     Displacement,
     /// Lighthill's efficiency
@@ -69,33 +69,73 @@ pub(super) enum MapQuantity {
 
 impl Map {
     pub(super) fn run(self, output: Output) -> Outcome {
-        let kind = match &self.output {
-            Some(path) => {
-                may_be_written(path)?;
-                Some(Kind::of(path, &[Kind::Svg, Kind::Png, Kind::Pdf])?)
-            }
-            None => None,
-        };
-        let width = self.figure.width(kind)?;
-        if let Some(path) = &self.export {
-            may_be_written(path)?;
-        }
+        let files = MapFiles::new(self.quantity, self.output, self.figure, self.export)?;
         let mut found = operation::map(&MapRequest {
             folder: self.folder,
             across: self.across,
             up: self.up,
             at: self.at,
         })?;
-        if let (Some(path), Some(kind)) = (&self.output, kind) {
-            let drawing = picture::drawn(&found.map, self.quantity, width)?;
-            kind.write(path, &drawing, width)?;
-        }
-        if let Some(path) = &self.export {
-            write_atomically(path, document(&found.map).as_bytes())?;
-        }
-        found.picture = self.output;
-        found.export = self.export;
+        files.write(&mut found)?;
         output.rendered(&found, &Text(&found));
+        Ok(())
+    }
+}
+
+/// New files of a map: a picture, and the numbers.
+#[derive(Debug)]
+pub(crate) struct MapFiles {
+    quantity: MapQuantity,
+    picture: Option<(PathBuf, Kind)>,
+    width: FigureWidth,
+    export: Option<PathBuf>,
+}
+
+impl MapFiles {
+    /// Files that do not exist yet.
+    ///
+    /// # Errors
+    /// A file exists, the picture has another ending, or a width is given without a picture.
+    pub(crate) fn new(
+        quantity: MapQuantity,
+        picture: Option<PathBuf>,
+        figure: FigureOptions,
+        export: Option<PathBuf>,
+    ) -> Outcome<Self> {
+        let picture = match picture {
+            Some(path) => {
+                may_be_written(&path)?;
+                let kind = Kind::of(&path, &[Kind::Svg, Kind::Png, Kind::Pdf])?;
+                Some((path, kind))
+            }
+            None => None,
+        };
+        let width = figure.width(picture.as_ref().map(|(_, kind)| *kind))?;
+        if let Some(path) = &export {
+            may_be_written(path)?;
+        }
+        Ok(Self {
+            quantity,
+            picture,
+            width,
+            export,
+        })
+    }
+
+    /// Writes the files and names them in the output.
+    ///
+    /// # Errors
+    /// No design of the map has the quantity, or the disk refuses.
+    pub(crate) fn write(self, output: &mut MapOutput) -> Outcome {
+        if let Some((path, kind)) = self.picture {
+            let drawing = picture::drawn(&output.map, self.quantity, self.width)?;
+            kind.write(&path, &drawing, self.width)?;
+            output.picture = Some(path);
+        }
+        if let Some(path) = self.export {
+            write_atomically(&path, document(&output.map).as_bytes())?;
+            output.export = Some(path);
+        }
         Ok(())
     }
 }
