@@ -22,6 +22,7 @@ use crate::certify::decided;
 use crate::immobile::refuse_immobile;
 use crate::momentum::pose;
 use crate::optimal_gait::OptimalGait;
+use crate::parallel::Watch;
 use crate::problem::{GaitClass, InvalidProblem, validated};
 
 /// Direction in which a counter-clockwise gait shall move the swimmer.
@@ -121,7 +122,19 @@ impl DisplacementProblem {
 /// # Ok::<(), gait_optimizer::DisplacementError>(())
 /// ```
 pub fn displacement(problem: &DisplacementProblem) -> Result<OptimalGait, DisplacementError> {
-    let optimum = |heading| no_saddle(best_symmetric(problem, heading)?);
+    displacement_watched(problem, &|_| ())
+}
+
+/// As [`displacement`]. `watch` receives the share of the start families of a sense that have been scanned, and 1 after each
+/// certificate.
+///
+/// # Errors
+/// As [`displacement`].
+pub fn displacement_watched(
+    problem: &DisplacementProblem,
+    watch: Watch<'_>,
+) -> Result<OptimalGait, DisplacementError> {
+    let optimum = |heading| no_saddle(best_symmetric(problem, heading, watch)?);
     match problem.heading {
         Some(heading) => optimum(heading),
         None => farther(optimum(Heading::Forwards), optimum(Heading::Backwards)),
@@ -162,11 +175,12 @@ fn no_saddle(gait: OptimalGait) -> Result<OptimalGait, DisplacementError> {
 pub(crate) fn best_symmetric(
     problem: &DisplacementProblem,
     heading: Heading,
+    watch: Watch<'_>,
 ) -> Result<OptimalGait, DisplacementError> {
     let model = problem.validated()?;
     refuse_immobile(&model, &problem.bounds)?;
     let region = Region::new(&problem.bounds, &problem.swimmer.links);
-    best(problem, heading, &model, &region)
+    best(problem, heading, (&model, &region), watch)
 }
 
 /// Every gait of one sense that the search finds, farthest first, including those that fail their certificate.
@@ -177,7 +191,8 @@ pub(crate) fn every(
     let model = problem.validated()?;
     refuse_immobile(&model, &problem.bounds)?;
     let region = Region::new(&problem.bounds, &problem.swimmer.links);
-    let (found, _) = candidates(&problem.bounds, heading, &model, &region, SCAN_POINTS);
+    let of = (&model, &region);
+    let (found, _) = candidates(&problem.bounds, heading, of, SCAN_POINTS, &|_| ());
     let gaits = found
         .iter()
         .filter_map(|candidate| certified(problem, &model, candidate));

@@ -21,6 +21,7 @@ use crate::extremal::gait::gait;
 use crate::extremal::{Extremal, Unpolished, polish, walls};
 use crate::immobile::refuse_immobile;
 use crate::optimal_gait::{EfficiencyFigures, OptimalGait};
+use crate::parallel::Watch;
 use crate::problem::{GaitClass, InvalidProblem, validated};
 pub use bounded::ReachedBounds;
 pub(crate) use chain::starts;
@@ -147,11 +148,26 @@ impl EfficiencyProblem {
 /// # Errors
 /// [`EfficiencyError`] if the problem is invalid or the branch has no optimum.
 pub fn efficiency(problem: &EfficiencyProblem) -> Result<OptimalGait, EfficiencyError> {
-    no_saddle(problem.branch, best_symmetric(problem)?)
+    efficiency_watched(problem, &|_| ())
+}
+
+/// As [`efficiency()`]. `watch` receives the share of the orders of a Fourier series that have been solved, then 1 after each
+/// certificate, and the share of the way to the bounds.
+///
+/// # Errors
+/// As [`efficiency()`].
+pub fn efficiency_watched(
+    problem: &EfficiencyProblem,
+    watch: Watch<'_>,
+) -> Result<OptimalGait, EfficiencyError> {
+    no_saddle(problem.branch, best_symmetric(problem, watch)?)
 }
 
 /// Gait of greatest efficiency of a branch among those with the paper's symmetries, even if it is a saddle among all closed curves.
-pub(crate) fn best_symmetric(problem: &EfficiencyProblem) -> Result<OptimalGait, EfficiencyError> {
+pub(crate) fn best_symmetric(
+    problem: &EfficiencyProblem,
+    watch: Watch<'_>,
+) -> Result<OptimalGait, EfficiencyError> {
     let model = problem.validated()?;
     refuse_immobile(&model, &problem.bounds)?;
     let branch = problem.branch;
@@ -161,7 +177,7 @@ pub(crate) fn best_symmetric(problem: &EfficiencyProblem) -> Result<OptimalGait,
     };
     let mut led_to = Vec::new();
     for start in starts(&model, branch)? {
-        match chain::extremal_from(&model, (branch, problem.method), start) {
+        match chain::extremal_from(&model, (branch, problem.method), start, watch) {
             Ok(found) => led_to.push(found),
             Err(error) => refused = refused.or_farther(error),
         }
@@ -170,7 +186,9 @@ pub(crate) fn best_symmetric(problem: &EfficiencyProblem) -> Result<OptimalGait,
     led_to.sort_by(|a, b| efficiency(b).total_cmp(&efficiency(a)));
     let mut best: Option<PolishedGait> = None;
     for (extremal, origin) in led_to {
-        match free(problem, &model, extremal, origin) {
+        let polished = free(problem, &model, extremal, origin);
+        watch(1.0);
+        match polished {
             // An optimum among all curves has priority over one among symmetric gaits.
             Ok(found) if found.gait.certificate.pass() => {
                 best = Some(found);
@@ -181,7 +199,7 @@ pub(crate) fn best_symmetric(problem: &EfficiencyProblem) -> Result<OptimalGait,
         }
     }
     match best {
-        Some(free) => within_bounds(problem, &model, &free),
+        Some(free) => within_bounds(problem, &model, &free, watch),
         None => Err(refused),
     }
 }
@@ -198,7 +216,7 @@ pub struct Direct<'a> {
 }
 
 /// Solves as [`efficiency()`] does, from the gait of another method: polishes it by shooting, certifies it and, if the problem has
-/// bounds, follows it while they tighten.
+/// bounds, follows it while they tighten. `watch` is that of [`efficiency_watched`].
 ///
 /// ```
 /// use gait_optimizer::{Branch, Direct, EfficiencyProblem, efficiency, efficiency_from};
@@ -208,7 +226,7 @@ pub struct Direct<'a> {
 /// let near = efficiency(&problem).unwrap();
 /// problem.swimmer.chi = 2.01;
 /// let direct = Direct { method: "another swimmer's", gait: &near.gait().unwrap(), efficiency: near.efficiency };
-/// let found = efficiency_from(&problem, &direct).unwrap();
+/// let found = efficiency_from(&problem, &direct, &|_| ()).unwrap();
 /// assert!((found.efficiency - efficiency(&problem).unwrap().efficiency).abs() < 1e-12);
 /// ```
 ///
@@ -217,6 +235,7 @@ pub struct Direct<'a> {
 pub fn efficiency_from(
     problem: &EfficiencyProblem,
     direct: &Direct<'_>,
+    watch: Watch<'_>,
 ) -> Result<OptimalGait, EfficiencyError> {
     let model = problem.validated()?;
     refuse_immobile(&model, &problem.bounds)?;
@@ -235,7 +254,11 @@ pub fn efficiency_from(
         direct_efficiency: Some(direct.efficiency),
     };
     let free = free(problem, &model, extremal, origin)?;
-    no_saddle(problem.branch, within_bounds(problem, &model, &free)?)
+    watch(1.0);
+    no_saddle(
+        problem.branch,
+        within_bounds(problem, &model, &free, watch)?,
+    )
 }
 
 /// Follows a free optimum to the bounds of the problem.
@@ -243,6 +266,7 @@ fn within_bounds(
     problem: &EfficiencyProblem,
     model: &Model<f64>,
     free: &PolishedGait,
+    watch: Watch<'_>,
 ) -> Result<OptimalGait, EfficiencyError> {
     let walls = walls(&problem.bounds, &problem.swimmer.links);
     let depths = free.gait.phi().iter().filter_map(|phi| walls.nearest(phi));
@@ -253,7 +277,7 @@ fn within_bounds(
             ..free.gait.clone()
         });
     }
-    bounded::bounded(problem, model, free)
+    bounded::bounded(problem, model, free, watch)
 }
 
 /// Refuses a gait that is a saddle among all closed curves.

@@ -105,11 +105,11 @@ pub use continuation::{
 pub use cycle::Arc;
 pub use displacement::{
     DisplacementError, DisplacementProblem, ExtremalOutcomes, Heading, displacement,
-    displacement_near,
+    displacement_near, displacement_watched,
 };
 pub use efficiency::{
     Branch, Direct, EfficiencyError, EfficiencyProblem, EfficiencySeed, Method, ReachedBounds,
-    efficiency, efficiency_by_order, efficiency_from,
+    efficiency, efficiency_by_order, efficiency_from, efficiency_watched,
 };
 pub use height_map::{
     AreaRule, Convergence, Frame, Grid, HeightMap, HeightMapError, LevelCurve, Row,

@@ -43,11 +43,12 @@ use swimmer_model::Swimmer;
 
 use crate::certificate::{Certificate, Condition};
 use crate::cycle::Cycle;
-use crate::displacement::{DisplacementProblem, Heading, displacement};
+use crate::displacement::{DisplacementProblem, Heading, displacement_watched};
 use crate::efficiency::Branch;
 use crate::immobile::refuse_immobile;
 use crate::member::Member;
 use crate::optimal_gait::OptimalGait;
+use crate::parallel::Watch;
 use arcs::Arcs;
 use ensemble::{Ensemble, RobustSolution};
 pub use error::RobustError;
@@ -179,7 +180,7 @@ impl Robustness {
 
 /// Returns the gait of most displacement, in the worst case or in the mean over the uncertainty, free or under an upper bound. r_s
 /// and χ of the problem's swimmer give way to the estimates. Without a heading in the problem, the farther of both senses, swum
-/// forwards.
+/// forwards. `watch` receives the progress of the searches, and 1 while the members are weighted.
 ///
 /// # Errors
 /// [`RobustError`] if no robust gait is found.
@@ -194,15 +195,16 @@ impl Robustness {
 ///     ..Uncertainty::none(robot.sphere_radius, robot.chi)
 /// };
 /// let problem = DisplacementProblem::new(robot).with_max_angle(1.5);
-/// let robust = robust_displacement(&problem, &uncertainty, Over::Worst).unwrap();
+/// let robust = robust_displacement(&problem, &uncertainty, Over::Worst, &|_| ()).unwrap();
 /// assert!(robust.robustness.values.worst >= robust.robustness.nominal.worst);
 /// ```
 pub fn robust_displacement(
     problem: &DisplacementProblem,
     uncertainty: &Uncertainty,
     over: Over,
+    watch: Watch<'_>,
 ) -> Result<RobustGait, RobustError> {
-    let of_sense = |heading| robust_of_sense(&problem.heading(heading), uncertainty, over);
+    let of_sense = |heading| robust_of_sense(&problem.heading(heading), uncertainty, over, watch);
     let Some(heading) = problem.heading else {
         let both = [Heading::Forwards, Heading::Backwards].map(of_sense);
         return farther(both, over);
@@ -236,13 +238,15 @@ fn robust_of_sense(
     problem: &DisplacementProblem,
     uncertainty: &Uncertainty,
     over: Over,
+    watch: Watch<'_>,
 ) -> Result<RobustGait, RobustError> {
-    let ensemble = Ensemble::new(&problem.swimmer, &problem.bounds, uncertainty)?;
+    let ensemble = Ensemble::new(&problem.swimmer, &problem.bounds, uncertainty, watch)?;
     let of = |swimmer| {
-        displacement(&DisplacementProblem {
+        let problem = DisplacementProblem {
             swimmer,
             ..*problem
-        })
+        };
+        displacement_watched(&problem, watch)
     };
     let swimmer = ensemble.nominal.swimmer;
     let optimum = of(swimmer)?;
@@ -265,7 +269,7 @@ fn robust_of_sense(
 
 /// The doubly symmetric Fourier gait of this order whose efficiency ξ, as timed, is the most in the worst case or in the mean.
 /// r_s and χ of the swimmer give way to the estimates. Bounds are not designed for, only kept: a gait
-/// beyond them is refused.
+/// beyond them is refused. `watch` receives 1 before each step, as their number is unknown.
 ///
 /// # Errors
 /// [`RobustError`] if no robust gait is found.
@@ -277,7 +281,7 @@ fn robust_of_sense(
 /// let purcell = Swimmer::purcell();
 /// let uncertainty = Uncertainty { chi_interval: [1.9, 2.1], ..Uncertainty::none(0.0, 2.0) };
 /// let small = (Branch::Small, 3);
-/// let robust = robust_efficiency(&purcell, small, &Bounds::default(), &uncertainty, Over::Mean).unwrap();
+/// let robust = robust_efficiency(&purcell, small, &Bounds::default(), &uncertainty, Over::Mean, &|_| ()).unwrap();
 /// assert!((robust.gait.efficiency / 0.0123641546 - 1.0).abs() < 1e-2);
 /// ```
 pub fn robust_efficiency(
@@ -286,6 +290,7 @@ pub fn robust_efficiency(
     bounds: &Bounds,
     uncertainty: &Uncertainty,
     over: Over,
+    watch: Watch<'_>,
 ) -> Result<RobustGait, RobustError> {
     if !(1..=MOST_ORDER).contains(&order) {
         return Err(RobustError::Order { order });
@@ -300,7 +305,7 @@ pub fn robust_efficiency(
             problem: "efficiency knows no lower bound and no sector; leave them out",
         });
     }
-    let ensemble = Ensemble::new(swimmer, bounds, uncertainty)?;
+    let ensemble = Ensemble::new(swimmer, bounds, uncertainty, watch)?;
     refuse_immobile(&ensemble.nominal.model, bounds)?;
     let family = FourierFamily::around(&ensemble.nominal, order, branch)?;
     let found = find(&family, &ensemble, over)?;

@@ -242,7 +242,10 @@ impl OtherMethods {
             ..problem
         };
         let called = |method: &str| format!("the {branch} Lighthill gait of {name} by {method}");
-        let collocated = found(collocation::efficiency(&problem), &called("collocation"))?;
+        let collocated = found(
+            collocation::efficiency(&problem, &|_| ()),
+            &called("collocation"),
+        )?;
         let fourier = found(efficiency(&by_fourier), &called("Fourier series"))?;
         let direct = |gait: &OptimalGait| {
             let figures = gait.efficiency_figures;

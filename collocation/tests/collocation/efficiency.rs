@@ -13,7 +13,7 @@ fn both_ways_find_the_same_gaits() {
         for branch in [Branch::Small, Branch::Large] {
             let problem = EfficiencyProblem::new(swimmer, branch);
             let shot = efficiency(&problem).unwrap();
-            let gait = collocation::efficiency(&problem).unwrap();
+            let gait = collocation::efficiency(&problem, &|_| ()).unwrap();
             assert!((gait.efficiency / shot.efficiency - 1.0).abs() < 1e-10);
             assert!((gait.start_angle - shot.start_angle).abs() < 1e-8);
             assert!(gait.certificate.pass(), "{:?}", gait.certificate.failures());
@@ -40,7 +40,7 @@ fn a_bound_is_followed_from_either() {
     };
     let (shot, ours) = (
         efficiency(&problem).unwrap(),
-        collocation::efficiency(&problem).unwrap(),
+        collocation::efficiency(&problem, &|_| ()).unwrap(),
     );
     assert!((ours.efficiency / shot.efficiency - 1.0).abs() < 1e-10);
 }

@@ -57,7 +57,7 @@ impl MultiStart for Displacement<'_> {
         };
         [Heading::Forwards, Heading::Backwards]
             .into_iter()
-            .filter_map(|heading| best_symmetric(&quarters, heading).ok())
+            .filter_map(|heading| best_symmetric(&quarters, heading, &|_| ()).ok())
             // Optimal among gaits of its symmetry; there it may be a saddle among all.
             .map(certified)
             .collect()

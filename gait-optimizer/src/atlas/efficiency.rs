@@ -45,7 +45,7 @@ impl MultiStart for Efficiency<'_> {
         [Branch::Small, Branch::Large]
             .into_iter()
             .filter_map(|branch| {
-                best_symmetric(&EfficiencyProblem::new(problem.swimmer, branch)).ok()
+                best_symmetric(&EfficiencyProblem::new(problem.swimmer, branch), &|_| ()).ok()
             })
             .collect()
     }

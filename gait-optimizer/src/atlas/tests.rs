@@ -100,9 +100,12 @@ fn what_is_best_of_its_symmetry_only_is_not_listed() {
         bounds,
         ..crate::DisplacementProblem::new(swimmer)
     };
-    let known =
-        crate::displacement::best_symmetric(&problem_of_quarters, crate::Heading::Backwards)
-            .unwrap();
+    let known = crate::displacement::best_symmetric(
+        &problem_of_quarters,
+        crate::Heading::Backwards,
+        &|_| (),
+    )
+    .unwrap();
     let certificate = &known.certificate;
     assert!(certificate.holds_among_symmetric() && !certificate.pass());
     let found = atlas(&AtlasProblem {
@@ -168,7 +171,7 @@ fn the_search_goes_on_from_a_saddle() {
 #[test]
 fn a_saddle_of_efficiency_is_not_listed_but_what_lies_beside_it() {
     let swimmer = swimmer(0.4, 2.6);
-    let saddle = best_symmetric(&EfficiencyProblem::new(swimmer, Branch::Large)).unwrap();
+    let saddle = best_symmetric(&EfficiencyProblem::new(swimmer, Branch::Large), &|_| ()).unwrap();
     let failed = saddle.certificate.failures();
     assert!(
         failed.starts_with("ascent_directions_without_symmetry = 1") && !failed.contains(','),

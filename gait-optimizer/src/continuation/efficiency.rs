@@ -65,10 +65,13 @@ impl Family for Efficiency<'_> {
         let value = self.problem.from;
         let gait = match start {
             Start::Gait(gait) => (**gait).clone(),
-            Start::Efficiency(branch) => best_symmetric(&EfficiencyProblem {
-                bounds: self.problem.bounds_at(value),
-                ..EfficiencyProblem::new(self.problem.swimmer_at(value), *branch)
-            })
+            Start::Efficiency(branch) => best_symmetric(
+                &EfficiencyProblem {
+                    bounds: self.problem.bounds_at(value),
+                    ..EfficiencyProblem::new(self.problem.swimmer_at(value), *branch)
+                },
+                &|_| (),
+            )
             .map_err(|error| error.to_string())?,
             Start::Displacement { .. } => {
                 return Err("it is no efficiency gait".to_owned());

@@ -9,16 +9,17 @@ use super::start_family::{families, families_on_the_diagonal};
 use super::{DisplacementError, DisplacementProblem, ExtremalOutcomes, Heading, certified};
 use crate::momentum::Motion;
 use crate::optimal_gait::OptimalGait;
+use crate::parallel::Watch;
 use crate::region::Region;
 
 /// Extremals of one sense within a region, farthest first, and the fates of all that were traced, from a number of places on each
-/// start family.
+/// start family. `watch` receives the share of the families that have been scanned.
 pub(super) fn candidates(
     bounds: &Bounds,
     heading: Heading,
-    model: &Model<f64>,
-    region: &Region,
+    (model, region): (&Model<f64>, &Region),
     places: usize,
+    watch: Watch<'_>,
 ) -> (Vec<Candidate>, ExtremalOutcomes) {
     let sign = heading.sign();
     let search = Search {
@@ -33,7 +34,7 @@ pub(super) fn candidates(
             .map(|touch| families_on_the_diagonal(flow, region, &families, touch));
         families.extend(inwards.into_iter().chain(outwards));
     }
-    let (mut found, outcomes) = search.candidates(&families, places);
+    let (mut found, outcomes) = search.candidates(&families, places, watch);
     found.retain(|candidate| sign * candidate.quarter.end[2] > 0.0);
     let carried = |candidate: &Candidate| candidate.quarter.end[2].abs();
     found.sort_by(|a, b| carried(b).total_cmp(&carried(a)));
@@ -44,10 +45,10 @@ pub(super) fn candidates(
 pub(super) fn best(
     problem: &DisplacementProblem,
     heading: Heading,
-    model: &Model<f64>,
-    region: &Region,
+    (model, region): (&Model<f64>, &Region),
+    watch: Watch<'_>,
 ) -> Result<OptimalGait, DisplacementError> {
-    let scan = |places| candidates(&problem.bounds, heading, model, region, places);
+    let scan = |places| candidates(&problem.bounds, heading, (model, region), places, watch);
     let (mut found, mut outcomes) = scan(SCAN_POINTS);
     // If many are lost, a finer scan only loses more.
     if found.is_empty() && 8 * outcomes.lost <= outcomes.sent {
@@ -55,7 +56,9 @@ pub(super) fn best(
     }
     let mut refused = None;
     for candidate in &found {
-        let Some(gait) = certified(problem, model, candidate) else {
+        let gait = certified(problem, model, candidate);
+        watch(1.0);
+        let Some(gait) = gait else {
             continue;
         };
         if gait.certificate.holds_among_symmetric() {

@@ -16,6 +16,7 @@ use crate::arcs::{SMOOTH, sampled};
 use crate::cycle::Cycle;
 use crate::momentum::{Flow, Momentum, Motion};
 use crate::numerics::root;
+use crate::parallel::Watch;
 use crate::region::Region;
 use crate::runge_kutta::StepControl;
 use shot::{Miss, Shot};
@@ -87,17 +88,20 @@ const MOST_REFINEMENTS: usize = 2 * SCAN_POINTS;
 type ScanPoint = (f64, [Option<Miss>; 3]);
 
 impl<'a> Search<'a> {
-    /// All candidates, in the order of the families, and the fates of the scan, which probes a number of places of each family.
+    /// All candidates, in the order of the families, and the fates of the scan, which probes a number of places of each family. `watch` receives
+    /// the share of the families that have been scanned.
     pub(crate) fn candidates(
         &self,
         families: &[StartFamily],
         places: usize,
+        watch: Watch<'_>,
     ) -> (Vec<Candidate>, ExtremalOutcomes) {
         let mut outcomes = ExtremalOutcomes::default();
         let mut found = Vec::new();
-        for family in families {
+        for (number, family) in (1..).zip(families) {
             self.scan(family, places, &mut outcomes, &mut found);
             found.extend(self.never_leaving(family));
+            watch(f64::from(number) / families.len() as f64);
         }
         (found, outcomes)
     }

@@ -14,6 +14,7 @@ use crate::certificate::{crossings, turning_number};
 use crate::extremal::Extremal;
 use crate::extremal::continuation::{Ended, Path, Tightness};
 use crate::optimal_gait::OptimalGait;
+use crate::parallel::Watch;
 use crate::region::Clearance;
 
 /// Share of the free gait's efficiency below which a branch counts as ended.
@@ -47,6 +48,7 @@ pub(super) fn bounded(
     problem: &EfficiencyProblem,
     model: &Model<f64>,
     free: &PolishedGait,
+    watch: Watch<'_>,
 ) -> Result<OptimalGait, EfficiencyError> {
     let (branch, bounds) = (problem.branch, &problem.bounds);
     let start = &free.extremal;
@@ -58,6 +60,7 @@ pub(super) fn bounded(
         model,
         clearance: bounds.clearance / problem.swimmer.total_length(),
         keeps: &keeps,
+        watch,
     };
     let links = model.swimmer().links;
     let max_angle = bounds.max_angle.unwrap_or(f64::INFINITY);

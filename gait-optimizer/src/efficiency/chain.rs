@@ -9,6 +9,7 @@ use crate::certificate::crossings;
 use crate::extremal::Extremal;
 use crate::extremal::guess::quarter_of_curve;
 use crate::extremal::shooting::solve;
+use crate::parallel::Watch;
 
 /// Origin of an extremal.
 #[derive(Debug, Clone, Copy)]
@@ -66,16 +67,19 @@ pub(crate) fn starts(model: &Model<f64>, branch: Branch) -> Result<Vec<[f64; 2]>
 }
 
 /// Solves the Fourier problem to a low order, then shoots; raises the order if shooting does not converge. With the method
-/// `fourier`, shooting starts from the order at which the series has converged.
+/// `fourier`, shooting starts from the order at which the series has converged. `watch` receives the share of the orders that have
+/// been solved.
 pub(crate) fn extremal_from(
     model: &Model<f64>,
     (branch, method): (Branch, Method),
     start: [f64; 2],
+    watch: Watch<'_>,
 ) -> Result<(Extremal, Origin), EfficiencyError> {
     let mut last: Option<(usize, Maximum)> = None;
     let mut saddle = None;
     let alone = method == Method::Fourier;
-    for (order, panels, gain, bridges) in LADDER {
+    for (rung, (order, panels, gain, bridges)) in LADDER.into_iter().enumerate() {
+        watch(rung as f64 / LADDER.len() as f64);
         // Each order starts from the previous one.
         let (mut from, before) = match &last {
             Some((_, below)) => (below.coefficients.clone(), below.value.efficiency()),

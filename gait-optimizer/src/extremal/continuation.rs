@@ -12,6 +12,7 @@ use super::equations::Motion;
 use super::shooting::{Chain, Entry, solve};
 use super::wall::walls;
 use super::{Extremal, Unpolished, polish_chain};
+use crate::parallel::Watch;
 use crate::region::Region;
 
 /// Bounds at one point of the homotopy.
@@ -56,6 +57,8 @@ pub(crate) struct Path<'a> {
     pub(crate) clearance: f64,
     /// Check of the properties that the gait must keep; the error names the lost one.
     pub(crate) keeps: &'a dyn Fn(&Extremal) -> Result<(), &'static str>,
+    /// Receives the completed share of the way before each step.
+    pub(crate) watch: Watch<'a>,
 }
 
 impl Path<'_> {
@@ -95,6 +98,7 @@ impl Path<'_> {
             if t >= 1.0 {
                 return Ok(here);
             }
+            (self.watch)(t);
             let next = (t + step).min(1.0);
             match self.step(&here, between(next)) {
                 Ok(found) => match difference(&here, &found) {

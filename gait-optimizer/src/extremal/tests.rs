@@ -179,6 +179,7 @@ fn an_optimum_has_no_ascent_and_the_saddle_beyond_a_fold_has_one() {
         model: &model,
         clearance: 0.0,
         keeps: &|_| Ok(()),
+        watch: &|_| (),
     };
     let at = |max_angle: f64| continuation::Tightness {
         max_angle,

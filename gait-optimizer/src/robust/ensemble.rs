@@ -7,6 +7,7 @@ use super::newton::Design;
 use super::uncertainty::Uncertainty;
 use super::{Over, RobustError, Values};
 use crate::member::Member;
+use crate::parallel::Watch;
 
 /// Ensemble of swimmers of a problem.
 pub(super) struct Ensemble<'a> {
@@ -17,6 +18,8 @@ pub(super) struct Ensemble<'a> {
     pub(super) grid: Vec<([f64; 3], Member)>,
     /// Members with their weights in the mean.
     pub(super) normal: Vec<(Member, f64)>,
+    /// Receives 1 before each solution and each search for the worst case; the rest of the work has no known length.
+    watch: Watch<'a>,
 }
 
 /// Worst case of a gait.
@@ -58,6 +61,7 @@ impl<'a> Ensemble<'a> {
         swimmer: &'a Swimmer<f64>,
         bounds: &Bounds,
         uncertainty: &'a Uncertainty,
+        watch: Watch<'a>,
     ) -> Result<Self, RobustError> {
         uncertainty.validate()?;
         swimmer.common_drag().map_err(InvalidSwimmer::Uncommon)?;
@@ -72,11 +76,13 @@ impl<'a> Ensemble<'a> {
             nominal: uncertainty.at(swimmer, [0.0; 3])?,
             grid: grid.collect::<Result<_, InvalidSwimmer>>()?,
             normal: uncertainty.normal(swimmer)?,
+            watch,
         })
     }
 
     /// Least value over the ensemble. Returns `None` if every value is NaN.
     pub(super) fn lowest(&self, value: impl Fn(&Member) -> f64) -> Option<Lowest> {
+        (self.watch)(1.0);
         let seen = self.grid.iter().map(|&(place, member)| Lowest {
             value: value(&member),
             place,
@@ -135,6 +141,7 @@ impl<'a> Ensemble<'a> {
         start: &D::Point,
         members: &[(Member, f64)],
     ) -> Result<D::Point, RobustError> {
+        (self.watch)(1.0);
         match design.solve(start, members) {
             Err(RobustError::NotConverged { .. }) => self.followed(design, members),
             other => other,
@@ -149,6 +156,7 @@ impl<'a> Ensemble<'a> {
         let mut here = design.start();
         let (mut share, mut step) = (0.0, 0.25);
         while share < 1.0 {
+            (self.watch)(1.0);
             let next = f64::min(share + step, 1.0);
             let scaled = members.iter().map(|(one, weight)| (*one, weight * next));
             let mut mixed = vec![(self.nominal, 1.0 - next)];

@@ -103,7 +103,7 @@ pub fn robust_speed(
     over: Over,
     watch: Watch<'_>,
 ) -> Result<RobustSpeed, RobustError> {
-    let ensemble = Ensemble::new(&problem.swimmer, &problem.bounds, uncertainty)?;
+    let ensemble = Ensemble::new(&problem.swimmer, &problem.bounds, uncertainty, watch)?;
     let problem = &SpeedProblem {
         swimmer: ensemble.nominal.swimmer,
         ..*problem

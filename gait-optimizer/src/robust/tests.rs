@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::Condition;
+use crate::displacement::displacement;
 use crate::member::Member;
 use crate::region::Region;
 use crate::speed::certificate::{GaitRequirements, certificate};
@@ -42,7 +43,7 @@ fn without_an_interval_it_is_the_nominal_optimum() {
     let exact = Uncertainty::none(0.0692, 3.598);
     let nominal = displacement(&bounded()).unwrap();
     for over in [Over::Worst, Over::Mean] {
-        let robust = robust_displacement(&bounded(), &exact, over).unwrap();
+        let robust = robust_displacement(&bounded(), &exact, over, &|_| ()).unwrap();
         // Collocation and shooting share nothing but the maximum principle.
         let values = robust.robustness.values;
         let off = values.nominal - nominal.displacement_over_length;
@@ -55,15 +56,16 @@ fn without_an_interval_it_is_the_nominal_optimum() {
         );
     }
     let free = DisplacementProblem::new(Swimmer::purcell());
-    let purcell = robust_displacement(&free, &Uncertainty::none(0.0, 2.0), Over::Worst).unwrap();
+    let purcell =
+        robust_displacement(&free, &Uncertainty::none(0.0, 2.0), Over::Worst, &|_| ()).unwrap();
     let known = purcell.robustness.values.nominal;
     assert!((known - 0.103_532_240_0).abs() < 1e-10, "{known}");
 }
 
 #[test]
 fn robustness_pays_where_it_is_asked_for() {
-    let worst = robust_displacement(&bounded(), &fit(), Over::Worst).unwrap();
-    let mean = robust_displacement(&bounded(), &fit(), Over::Mean).unwrap();
+    let worst = robust_displacement(&bounded(), &fit(), Over::Worst, &|_| ()).unwrap();
+    let mean = robust_displacement(&bounded(), &fit(), Over::Mean, &|_| ()).unwrap();
     let (a, b) = (&worst.robustness, &mean.robustness);
     assert!(a.values.worst > a.nominal.worst + 1e-7, "{worst:?}");
     assert!(b.values.mean > b.nominal.mean + 1e-8);
@@ -104,7 +106,7 @@ fn bumped(gait: &OptimalGait, at: f64, size: f64) -> AnyGait {
 /// No gait near the robust one does better for the mean: bumps on its free arcs, within the bound.
 #[test]
 fn no_neighbour_has_a_better_mean() {
-    let robust = robust_displacement(&bounded(), &fit(), Over::Mean).unwrap();
+    let robust = robust_displacement(&bounded(), &fit(), Over::Mean, &|_| ()).unwrap();
     let members = fit().normal(&Swimmer::robot()).unwrap();
     let mean = |gait: &AnyGait| -> f64 {
         let of = |(member, weight): &(Member, f64)| {
@@ -159,7 +161,15 @@ fn purcells_small_gait_comes_out_of_the_series() {
     let exact = Uncertainty::none(0.0, 2.0);
     let robust = |order| {
         let (purcell, free) = (Swimmer::purcell(), Bounds::default());
-        robust_efficiency(&purcell, (Branch::Small, order), &free, &exact, Over::Mean).unwrap()
+        robust_efficiency(
+            &purcell,
+            (Branch::Small, order),
+            &free,
+            &exact,
+            Over::Mean,
+            &|_| (),
+        )
+        .unwrap()
     };
     let [third, sixth] = [3, 6].map(robust);
     let (less, best) = (third.robustness.values, sixth.robustness.values);
@@ -175,7 +185,7 @@ fn robust_efficiency_pays_too() {
     for branch in [Branch::Small, Branch::Large] {
         let robust = |over| {
             let (robot, free) = (Swimmer::robot(), Bounds::default());
-            robust_efficiency(&robot, (branch, 3), &free, &fit(), over).unwrap()
+            robust_efficiency(&robot, (branch, 3), &free, &fit(), over, &|_| ()).unwrap()
         };
         let [worst, mean] = [Over::Worst, Over::Mean].map(robust);
         let (a, b) = (&worst.robustness, &mean.robustness);
@@ -195,7 +205,7 @@ fn a_gain_in_doubt_is_designed_for() {
         ..Uncertainty::none(0.0, 2.0)
     };
     let free = DisplacementProblem::new(Swimmer::purcell());
-    let robust = robust_displacement(&free, &exact, Over::Worst).unwrap();
+    let robust = robust_displacement(&free, &exact, Over::Worst, &|_| ()).unwrap();
     let Robustness {
         values,
         nominal,
@@ -223,7 +233,7 @@ fn the_worst_of_an_ellipse_is_a_minimum() {
         correlation: Some(0.83),
         ..fit()
     };
-    let robust = robust_displacement(&bounded(), &tilted, Over::Worst).unwrap();
+    let robust = robust_displacement(&bounded(), &tilted, Over::Worst, &|_| ()).unwrap();
     let gait = robust.gait.gait().unwrap();
     let steps = 720;
     let brings = |i: i32| {
@@ -252,7 +262,14 @@ fn nonsense_is_refused() {
             ..Bounds::default()
         };
         let large = (Branch::Large, order);
-        robust_efficiency(&Swimmer::robot(), large, &bounds, uncertainty, Over::Mean)
+        robust_efficiency(
+            &Swimmer::robot(),
+            large,
+            &bounds,
+            uncertainty,
+            Over::Mean,
+            &|_| (),
+        )
     };
     for order in [0, 99] {
         let refused = efficiency(order, None, &fit());
@@ -272,13 +289,13 @@ fn nonsense_is_refused() {
     ));
     let free = DisplacementProblem::new(Swimmer::robot());
     assert!(matches!(
-        robust_displacement(&free, &fit(), Over::Mean),
+        robust_displacement(&free, &fit(), Over::Mean, &|_| ()),
         Err(RobustError::Nominal(_))
     ));
     let mut sector = bounded();
     sector.bounds.sector = true;
     assert!(matches!(
-        robust_displacement(&sector, &fit(), Over::Mean),
+        robust_displacement(&sector, &fit(), Over::Mean, &|_| ()),
         Err(RobustError::Arc { .. })
     ));
     let slipping = Uncertainty {
@@ -288,7 +305,7 @@ fn nonsense_is_refused() {
     let mut apart = bounded();
     apart.bounds.no_overlap = true;
     assert!(matches!(
-        robust_displacement(&apart, &slipping, Over::Mean),
+        robust_displacement(&apart, &slipping, Over::Mean, &|_| ()),
         Err(RobustError::Clearance)
     ));
 }
@@ -299,7 +316,7 @@ fn nonsense_is_refused() {
 fn a_branch_that_ends_is_told() {
     let on = |order| {
         let (robot, small, free) = (Swimmer::robot(), (Branch::Small, order), Bounds::default());
-        let found = robust_efficiency(&robot, small, &free, &fit(), Over::Worst);
+        let found = robust_efficiency(&robot, small, &free, &fit(), Over::Worst, &|_| ());
         found.unwrap().robustness
     };
     assert!(!on(3).off_branch);

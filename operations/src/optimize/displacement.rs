@@ -1,7 +1,7 @@
 //! Simple gaits of most displacement per cycle.
 
 use gait_optimizer::{
-    DisplacementError, DisplacementProblem, Heading, displacement, robust_displacement,
+    DisplacementError, DisplacementProblem, Heading, displacement_watched, robust_displacement,
 };
 use serde::{Deserialize, Serialize};
 use swimmer_files::Objective;
@@ -145,8 +145,8 @@ pub fn run(request: &Request, context: &mut Context) -> Result<Output, Error> {
         }
         let uncertainty = robust.uncertainty(&file, context)?;
         let over = robust.over.into();
-        let found = context.timed(Stage::Search, |_| {
-            robust_displacement(&problem, &uncertainty, over)
+        let found = context.timed(Stage::Search, |watch| {
+            robust_displacement(&problem, &uncertainty, over, watch)
                 .map_err(|error| robust::refused(error, &request.bounds))
         });
         let output = robust::describe(&file, split(found)?, request.timing, context)?;
@@ -172,8 +172,11 @@ pub fn run(request: &Request, context: &mut Context) -> Result<Output, Error> {
             gait: GaitOutput::new(name, found.gait(), timed, seconds),
         }));
     }
-    let search = |bounds| Ok(displacement(&DisplacementProblem { bounds, ..problem })?);
-    let found = context.timed(Stage::Search, |_| {
+    let found = context.timed(Stage::Search, |watch| {
+        let search = |bounds| {
+            let problem = DisplacementProblem { bounds, ..problem };
+            Ok(displacement_watched(&problem, watch)?)
+        };
         searched(&file, is_playable, problem.bounds, |gait| gait, search)
     });
     let (gait, seconds) = split(found)?;

@@ -1,7 +1,8 @@
 //! Gaits of most Lighthill efficiency.
 
 use gait_optimizer::{
-    Branch, EfficiencyError, EfficiencyProblem, OptimalGait, efficiency, robust_efficiency,
+    Branch, EfficiencyError, EfficiencyProblem, OptimalGait, Watch, efficiency_watched,
+    robust_efficiency,
 };
 use serde::{Deserialize, Serialize};
 use swimmer_files::{Bounds, Objective, SwimmerFile};
@@ -181,8 +182,9 @@ pub fn run(request: &Request, context: &mut Context) -> Result<Output, Error> {
         let uncertainty = robust.uncertainty(&file, context)?;
         let over = robust.over.into();
         let order = (branch, request.order.unwrap_or(ROBUST_ORDER));
-        let found = context.timed(Stage::Search, |_| {
-            robust_efficiency(&problem.swimmer, order, &problem.bounds, &uncertainty, over)
+        let found = context.timed(Stage::Search, |watch| {
+            let (swimmer, bounds) = (&problem.swimmer, &problem.bounds);
+            robust_efficiency(swimmer, order, bounds, &uncertainty, over, watch)
                 .map_err(|error| robust::refused(error, &request.bounds))
         });
         let output = robust::describe(&file, split(found)?, request.timing, context)?;
@@ -199,11 +201,11 @@ pub fn run(request: &Request, context: &mut Context) -> Result<Output, Error> {
         }
         return without_symmetry(request, &file, problem.bounds, context).map(Output::Closed);
     }
-    let search = |bounds| {
-        let problem = EfficiencyProblem { bounds, ..problem };
-        solve(request.method, &problem)
-    };
-    let found = context.timed(Stage::Search, |_| {
+    let found = context.timed(Stage::Search, |watch| {
+        let search = |bounds| {
+            let problem = EfficiencyProblem { bounds, ..problem };
+            solve(request.method, &problem, watch)
+        };
         let is_playable = request.bounds.playable;
         searched(&file, is_playable, problem.bounds, |gait| gait, search)
     });
@@ -223,25 +225,31 @@ pub fn run(request: &Request, context: &mut Context) -> Result<Output, Error> {
 }
 
 /// Solves by the optimiser, or by direct collocation if that method is requested.
-fn solve(method: Method, problem: &EfficiencyProblem) -> Result<OptimalGait, Error> {
+fn solve(
+    method: Method,
+    problem: &EfficiencyProblem,
+    watch: Watch<'_>,
+) -> Result<OptimalGait, Error> {
     match method {
-        Method::Collocation => by_collocation(problem),
-        Method::Auto | Method::Fourier | Method::Shooting => Ok(efficiency(problem)?),
+        Method::Collocation => by_collocation(problem, watch),
+        Method::Auto | Method::Fourier | Method::Shooting => {
+            Ok(efficiency_watched(problem, watch)?)
+        }
     }
 }
 
 #[cfg(feature = "all-searches")]
-fn by_collocation(problem: &EfficiencyProblem) -> Result<OptimalGait, Error> {
+fn by_collocation(problem: &EfficiencyProblem, watch: Watch<'_>) -> Result<OptimalGait, Error> {
     use collocation::CollocationError;
 
-    collocation::efficiency(problem).map_err(|error| match error {
+    collocation::efficiency(problem, watch).map_err(|error| match error {
         CollocationError::Polish(error) => error.into(),
         other => Error::failed(&other),
     })
 }
 
 #[cfg(not(feature = "all-searches"))]
-fn by_collocation(_: &EfficiencyProblem) -> Result<OptimalGait, Error> {
+fn by_collocation(_: &EfficiencyProblem, _: Watch<'_>) -> Result<OptimalGait, Error> {
     Err(left_out("the method `collocation`"))
 }
 

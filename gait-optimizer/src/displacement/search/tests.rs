@@ -35,7 +35,7 @@ fn the_second_variation_agrees_with_the_neighbours() {
                     let flow = search.flow(0.0, Motion::Singular);
                     for family in families(flow, &bounds, &region) {
                         let (found, _) =
-                            search.candidates(std::slice::from_ref(&family), SCAN_POINTS);
+                            search.candidates(std::slice::from_ref(&family), SCAN_POINTS, &|_| ());
                         for candidate in found {
                             let Some(gain) = neighbour_gain(&search, &family, &candidate) else {
                                 continue;
@@ -108,7 +108,8 @@ fn what_touches_its_images_goes_round_once() {
             };
             let region = Region::new(&bounds, &swimmer.links);
             for heading in [Heading::Forwards, Heading::Backwards] {
-                let (found, _) = candidates(&bounds, heading, &model, &region, SCAN_POINTS);
+                let of = (&model, &region);
+                let (found, _) = candidates(&bounds, heading, of, SCAN_POINTS, &|_| ());
                 for candidate in found {
                     let cycle = candidate.cycle(&model, 64).unwrap();
                     let turns = turning_number(&cycle.phi);
