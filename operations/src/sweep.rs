@@ -16,6 +16,11 @@ const LARGEST_HASHED: u64 = 1 << 28;
 
 /// A plan. The JSON document of `swimmer sweep plan`.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "SweepPlanOutput")
+)]
 pub struct PlanOutput {
     /// Hash of the plan.
     pub plan: String,
@@ -39,6 +44,11 @@ pub struct PlanOutput {
 
 /// An axis of a plan.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "SweepAxisOutput")
+)]
 pub struct AxisOutput {
     /// Name.
     pub name: &'static str,
@@ -84,6 +94,11 @@ pub fn plan(spec: &Path, folder: &Path) -> Result<PlanOutput, Error> {
 
 /// A finished run of a shard. The JSON document of `swimmer sweep run`.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "SweepRunOutput")
+)]
 pub struct RunOutput {
     /// Hash of the plan.
     pub plan: String,
@@ -135,8 +150,39 @@ pub fn status(folder: &Path) -> Result<Status, Error> {
     Ok(sweep::status(&Plan::load(folder)?, folder)?)
 }
 
+/// A job array for a scheduler. The JSON document of `swimmer sweep submit`; the front end writes the script.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "SweepSubmitOutput")
+)]
+pub struct SubmitOutput {
+    /// Number of designs of the plan.
+    pub tasks: u64,
+    /// Number of solved designs.
+    pub done: u64,
+    /// Number of designs without a gait.
+    pub failed: u64,
+    /// Number of shards, each a task of the job array.
+    pub shards: u64,
+    /// Number of cores of each task.
+    pub cores: u64,
+    /// Time limit of each task \[min\].
+    pub minutes: u64,
+    /// Script of the job array.
+    pub script: PathBuf,
+    /// Number of the job array; null if it was not submitted.
+    pub job: Option<String>,
+}
+
 /// A table of all designs. The JSON document of `swimmer sweep merge`.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "SweepMergeOutput")
+)]
 pub struct MergeOutput {
     /// Hash of the plan.
     pub plan: String,
@@ -195,6 +241,11 @@ pub struct MapRequest {
 
 /// A map of a finished grid. The JSON document of `swimmer sweep map`.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "SweepMapOutput")
+)]
 pub struct MapOutput {
     /// Hash of the plan.
     pub plan: String,

@@ -37,6 +37,11 @@ impl Slice {
 
 /// An axis of a map.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "SweepMapAxis")
+)]
 pub struct MapAxis {
     /// Name of the field.
     pub name: &'static str,
@@ -50,6 +55,11 @@ pub struct MapAxis {
 
 /// Mapped quantity: one row per value of the second axis, one number per value of the first.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "SweepMapQuantity")
+)]
 pub struct Quantity {
     /// Its name.
     pub name: &'static str,
@@ -63,6 +73,11 @@ pub struct Quantity {
 
 /// Design on the Pareto front of speed and efficiency.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "SweepPareto")
+)]
 pub struct Pareto {
     /// Key of the task.
     pub key: u64,
@@ -76,6 +91,11 @@ pub struct Pareto {
 
 /// Axis of the plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "SweepPlanAxis")
+)]
 pub struct PlanAxis {
     /// Name in the spec.
     pub name: &'static str,
@@ -85,8 +105,13 @@ pub struct PlanAxis {
     pub unit: &'static str,
 }
 
-/// Map, as `sweep map --export` writes it.
+/// Map. The JSON file of `swimmer sweep map --export`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "SweepMap")
+)]
 pub struct Map {
     /// `swimmer-sweep-map 1`.
     pub format: &'static str,

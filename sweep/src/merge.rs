@@ -19,6 +19,11 @@ use crate::{Aim, Field, Plan, SweepError, part};
 
 /// Counts of a merged table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "SweepMergeCounts")
+)]
 pub struct Merged {
     /// Number of rows.
     #[serde(rename = "done")]

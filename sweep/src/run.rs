@@ -80,6 +80,11 @@ impl std::fmt::Debug for Running<'_> {
 
 /// Progress of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "SweepRunCounts")
+)]
 pub struct Ran {
     /// Number of tasks in finished blocks.
     #[serde(rename = "done")]

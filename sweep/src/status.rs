@@ -8,8 +8,13 @@ use serde::Serialize;
 use crate::run::COSTS;
 use crate::{Plan, SweepError, part};
 
-/// Progress of a sweep.
+/// Progress of a sweep. The JSON document of `swimmer sweep status`.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "SweepStatusOutput")
+)]
 pub struct Status {
     /// Hash of the plan.
     pub plan: String,

@@ -11,5 +11,5 @@
 mod rows;
 mod study;
 
-pub use rows::{Claim, Printed, Row, Tally, rows};
+pub use rows::{Claim, Output, Printed, Row, Tally, rows};
 pub use study::{LARGEST, Lighthill, OtherMethods, Simple, Study, StudyError, UPPER};

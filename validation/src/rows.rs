@@ -11,6 +11,8 @@ mod fit;
 mod methods;
 mod switching;
 
+use std::path::PathBuf;
+
 use serde::Serialize;
 
 use super::study::Study;
@@ -20,6 +22,11 @@ const PRINTED: &str = include_str!("rows/printed.tsv");
 
 /// Kind of a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "PaperClaim")
+)]
 #[serde(rename_all = "lowercase")]
 pub enum Claim {
     /// The paper prints a number or a range of numbers.
@@ -30,6 +37,11 @@ pub enum Claim {
 
 /// Value printed in the paper.
 #[derive(Debug, Clone, Copy, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "PrintedValue")
+)]
 #[serde(untagged)]
 pub enum Printed {
     /// A number.
@@ -40,6 +52,11 @@ pub enum Printed {
 
 /// Comparison of one number.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "PaperRow")
+)]
 pub struct Row {
     /// Identifier of the row.
     pub id: &'static str,
@@ -102,8 +119,44 @@ impl Row {
     }
 }
 
+/// All comparisons. The JSON document of `swimmer paper`.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "PaperOutput")
+)]
+pub struct Output {
+    /// Comparisons.
+    pub rows: Vec<Row>,
+    /// Page, if the front end wrote one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub page: Option<PathBuf>,
+    /// Rows with a printed number.
+    pub numbers: Tally,
+    /// Rows with a statement.
+    pub statements: Tally,
+}
+
+impl Output {
+    /// Counts the rows.
+    pub fn new(rows: Vec<Row>) -> Self {
+        Self {
+            numbers: Tally::of(&rows, Claim::Number),
+            statements: Tally::of(&rows, Claim::Statement),
+            rows,
+            page: None,
+        }
+    }
+}
+
 /// Counts of rows by outcome.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "PaperTally")
+)]
 pub struct Tally {
     /// Rows that agree with the paper.
     pub reproduced: usize,

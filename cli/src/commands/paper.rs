@@ -3,9 +3,8 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use serde::Serialize;
 use swimmer_files::write_atomically;
-use validation::{Claim, Row, Study, Tally, rows};
+use validation::{Study, rows};
 
 use crate::failure::{Failure, Outcome};
 use crate::new_folder::NewFolder;
@@ -26,18 +25,6 @@ pub(crate) struct Paper {
     output: Option<PathBuf>,
     #[command(flatten)]
     figure: FigureOptions,
-}
-
-#[derive(Debug, Serialize)]
-struct PaperOutput {
-    rows: Vec<Row>,
-    /// The page that was written.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    page: Option<PathBuf>,
-    /// Rows with a printed number.
-    numbers: Tally,
-    /// Rows with a statement.
-    statements: Tally,
 }
 
 const PAGE: &str = "index.html";
@@ -77,20 +64,23 @@ impl Paper {
             Failure::AlreadyPrinted(format!("differ from the paper: {}", differ.join(", ")))
         });
         drop(progress);
-        output.print(&PaperOutput {
-            numbers: Tally::of(&rows, Claim::Number),
-            statements: Tally::of(&rows, Claim::Statement),
-            rows,
+        let compared = validation::Output {
             page: written,
-        });
+            ..validation::Output::new(rows)
+        };
+        output.rendered(&compared, &Text(&compared));
         failure.map_or(Ok(()), Err)
     }
 }
 
-impl fmt::Display for PaperOutput {
+/// Output as text.
+struct Text<'a>(&'a validation::Output);
+
+impl fmt::Display for Text<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(output) = self;
         let mut table = Table::new(["quantity", "paper", "ours", "deviation", ""]);
-        for row in &self.rows {
+        for row in &output.rows {
             let verdict = match row.pass {
                 Some(true) => "ok",
                 Some(false) => "DIFFERS",
@@ -105,14 +95,14 @@ impl fmt::Display for PaperOutput {
             ]);
         }
         write!(f, "{table}")?;
-        for row in self.rows.iter().filter(|row| row.pass.is_none()) {
+        for row in output.rows.iter().filter(|row| row.pass.is_none()) {
             write!(f, "\n  {}: {}", row.id, row.note)?;
         }
-        let Self {
+        let validation::Output {
             numbers,
             statements,
             ..
-        } = self;
+        } = output;
         write!(
             f,
             "\n  {} printed numbers: {} reproduced, {} differ, {} not reproducible",
@@ -129,7 +119,7 @@ impl fmt::Display for PaperOutput {
             statements.differ,
             statements.open
         )?;
-        if let Some(page) = &self.page {
+        if let Some(page) = &output.page {
             write!(f, "\n  written to {}", page.display())?;
         }
         Ok(())

@@ -846,6 +846,51 @@ export interface Pair {
   chi: number;
 }
 
+/** Kind of a row. */
+export type PaperClaim = "number" | "statement";
+
+/** All comparisons. The JSON document of `swimmer paper`. */
+export interface PaperOutput {
+  /** Comparisons. */
+  rows: PaperRow[];
+  /** Rows with a printed number. */
+  numbers: PaperTally;
+  /** Rows with a statement. */
+  statements: PaperTally;
+  /** Page, if the front end wrote one. */
+  page?: string | null;
+}
+
+/** Comparison of one number. */
+export interface PaperRow {
+  /** Identifier of the row. */
+  id: string;
+  /** Name of the quantity, with its unit. */
+  quantity: string;
+  /** The paper's number. */
+  paper: PrintedValue;
+  /** The number computed. */
+  ours: number;
+  /** Deviation relative to the paper's number or to the nearest end of its range; absolute if that is zero. */
+  deviation: number;
+  /** `None` if the paper's number cannot be reproduced. */
+  pass: boolean | null;
+  /** Printed number or statement. */
+  claim: PaperClaim;
+  /** Explanation of what the paper leaves open; may be empty. */
+  note?: string;
+}
+
+/** Counts of rows by outcome. */
+export interface PaperTally {
+  /** Rows that agree with the paper. */
+  reproduced: number;
+  /** Rows that differ from it. */
+  differ: number;
+  /** Rows that cannot be compared, each with its reason. */
+  open: number;
+}
+
 /** Best waveform. The JSON document of `swimmer optimize passive`. */
 export interface PassiveOutput {
   /** Quantity that is maximised. */
@@ -1061,6 +1106,9 @@ export interface PresetOutput {
   /** Radius of the sphere [m]. */
   sphere_radius_m: number;
 }
+
+/** Value printed in the paper. */
+export type PrintedValue = number | string;
 
 /** A profile likelihood. */
 export interface Profile {
@@ -1497,6 +1545,245 @@ export interface Stretch {
   until_s: number;
   /** Number. */
   rows: number;
+}
+
+/** An axis of a plan. */
+export interface SweepAxisOutput {
+  /** Name. */
+  name: string;
+  /** Unit. */
+  unit: string;
+  /** Number of points of a grid; 0 in other plans. */
+  count: number;
+}
+
+/** Doubtful design. */
+export interface SweepDoubt {
+  /** Reason. */
+  kind: SweepDoubtKind;
+  /** Key of the task. */
+  key: number;
+  /** Key of the neighbour with which it was compared. */
+  neighbour: number;
+  /** Relative difference by which the neighbour is better; `None` for a lost gait. */
+  share: number | null;
+}
+
+/** Reason to doubt a design. */
+export type SweepDoubtKind = "beaten" | "lost" | "jump";
+
+/** Map. The JSON file of `swimmer sweep map --export`. */
+export interface SweepMap {
+  /** `swimmer-sweep-map 1`. */
+  format: string;
+  /** Hash of the plan. */
+  plan: string;
+  /** Objective of the gaits. */
+  objective: string;
+  /** Horizontal and vertical axis. */
+  axes: [SweepMapAxis, SweepMapAxis];
+  /** Quantities that at least one design of the slice has. */
+  quantities: SweepMapQuantity[];
+  /** Arcs of each gait, or `None`. */
+  structure: ((string | null)[])[];
+  /** `optimal`, `uncertified` or `none`. */
+  status: string[][];
+  /** Polylines (values of both axes) between designs whose gaits have different arcs, or of which one has no gait. */
+  folds: [number, number][][];
+  /** Pareto front of the whole plan, slowest first; empty without servo rates. */
+  pareto: SweepPareto[];
+  /** Axes of the whole plan, without that of the objective. */
+  plan_axes: SweepPlanAxis[];
+}
+
+/** An axis of a map. */
+export interface SweepMapAxis {
+  /** Name of the field. */
+  name: string;
+  /** Name in words. */
+  words: string;
+  /** Its unit. */
+  unit: string;
+  /** Values in the order of the plan. */
+  values: number[];
+}
+
+/** A map of a finished grid. The JSON document of `swimmer sweep map`. */
+export interface SweepMapOutput {
+  /** Hash of the plan. */
+  plan: string;
+  /** Number of designs of the plan. */
+  tasks: number;
+  /** Number of solved designs: all. */
+  done: number;
+  /** Number of designs of the plan without a gait. */
+  failed: number;
+  /** Number of designs of the slice. */
+  designs: number;
+  /** Number of these without a gait. */
+  without_gait: number;
+  /** Number of these whose certificate does not pass. */
+  uncertified: number;
+  /** Number of kinds of gait in the slice, by their arcs. */
+  kinds: number;
+  /** Number of lines at which the kind of gait changes. */
+  folds: number;
+  /** Number of designs on the Pareto front of the plan. */
+  pareto: number;
+  /** Designs of the plan that differ from their neighbours. */
+  doubts: SweepDoubt[];
+  /** Picture, if the front end drew one. */
+  picture: string | null;
+  /** File of the map's numbers, if the front end wrote one. */
+  export: string | null;
+}
+
+/** Mapped quantity: one row per value of the second axis, one number per value of the first. */
+export interface SweepMapQuantity {
+  /** Its name. */
+  name: string;
+  /** Name in words. */
+  words: string;
+  /** Its unit. */
+  unit: string;
+  /** `None` if the design has no gait. */
+  values: ((number | null)[])[];
+}
+
+/** A table of all designs. The JSON document of `swimmer sweep merge`. */
+export interface SweepMergeOutput {
+  /** Hash of the plan. */
+  plan: string;
+  /** Number of designs of the plan. */
+  tasks: number;
+  /** Number of rows. */
+  done: number;
+  /** Designs without a gait. */
+  failed: number;
+  /** Number of gaits whose certificate passes. */
+  certified: number;
+  /** The table. */
+  table: string;
+  /** Its size in bytes. */
+  bytes: number;
+  /** Its hash; null for tables above 256 MiB. */
+  sha256: string | null;
+}
+
+/** Design on the Pareto front of speed and efficiency. */
+export interface SweepPareto {
+  /** Key of the task. */
+  key: number;
+  /** |d|/(L T) [1/s]. */
+  speed: number;
+  /** ξ. */
+  efficiency: number;
+  /** Values of the plan's axes, in the order of `Map::plan_axes`. */
+  design: number[];
+}
+
+/** Axis of the plan. */
+export interface SweepPlanAxis {
+  /** Name in the spec. */
+  name: string;
+  /** Name in words. */
+  words: string;
+  /** Unit; empty for a number. */
+  unit: string;
+}
+
+/** A plan. The JSON document of `swimmer sweep plan`. */
+export interface SweepPlanOutput {
+  /** Hash of the plan. */
+  plan: string;
+  /** Folder of the plan and of its results. */
+  folder: string;
+  /** Objectives, separated by commas. */
+  objective: string;
+  /** Number of designs. */
+  tasks: number;
+  /** Number of solved designs. */
+  done: number;
+  /** Number of designs without a gait. */
+  failed: number;
+  /** Number of blocks. */
+  blocks: number;
+  /** Number of designs of a block. */
+  block_size: number;
+  /** Axes. */
+  axes: SweepAxisOutput[];
+}
+
+/** A finished run of a shard. The JSON document of `swimmer sweep run`. */
+export interface SweepRunOutput {
+  /** Hash of the plan. */
+  plan: string;
+  /** Shard, as `2/7`. */
+  shard: string;
+  /** Number of designs of the plan. */
+  tasks: number;
+  /** Number of tasks in finished blocks. */
+  done: number;
+  /** Number of those without a gait. */
+  failed: number;
+  /** Number of blocks of the shard. */
+  blocks: number;
+  /** Number of blocks finished by earlier runs. */
+  blocks_skipped: number;
+  /** Duration [s]; 0 if the front end has no clock. */
+  seconds: number;
+}
+
+/** Progress of a sweep. The JSON document of `swimmer sweep status`. */
+export interface SweepStatusOutput {
+  /** Hash of the plan. */
+  plan: string;
+  /** Number of designs of the plan. */
+  tasks: number;
+  /** Number of designs in finished blocks. */
+  done: number;
+  /** Number of those without a gait. */
+  failed: number;
+  /** Number of those whose certificate does not pass. */
+  uncertified: number;
+  /** Number of those found from a neighbour's gait. */
+  warm: number;
+  /** Number of blocks of the plan. */
+  blocks: number;
+  /** Number of finished blocks. */
+  blocks_done: number;
+  /** Number of incomplete blocks and of blocks of another plan; a run replaces them. */
+  blocks_broken: number;
+  /** Size of all parts in bytes. */
+  bytes: number;
+  /** Mean core seconds of a search; `None` before the first was timed. */
+  cold_s: number | null;
+  /** Mean core seconds of a step from a neighbour's gait. */
+  warm_s: number | null;
+  /** Mean core seconds of a design, searches and steps together. */
+  design_s: number | null;
+  /** Remaining core seconds at that mean. */
+  left_s: number | null;
+}
+
+/** A job array for a scheduler. The JSON document of `swimmer sweep submit`; the front end writes the script. */
+export interface SweepSubmitOutput {
+  /** Number of designs of the plan. */
+  tasks: number;
+  /** Number of solved designs. */
+  done: number;
+  /** Number of designs without a gait. */
+  failed: number;
+  /** Number of shards, each a task of the job array. */
+  shards: number;
+  /** Number of cores of each task. */
+  cores: number;
+  /** Time limit of each task [min]. */
+  minutes: number;
+  /** Script of the job array. */
+  script: string;
+  /** Number of the job array; null if it was not submitted. */
+  job: string | null;
 }
 
 /** All presets. The JSON document of `swimmer swimmers`. */

@@ -10,6 +10,11 @@ use crate::{Axis, Design, Plan, SweepError, part};
 
 /// Reason to doubt a design.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "SweepDoubtKind")
+)]
 #[serde(rename_all = "lowercase")]
 pub enum DoubtKind {
     /// A neighbour with tighter bounds is better.
@@ -22,6 +27,11 @@ pub enum DoubtKind {
 
 /// Doubtful design.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "SweepDoubt")
+)]
 pub struct Doubt {
     /// Reason.
     pub kind: DoubtKind,

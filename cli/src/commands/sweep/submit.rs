@@ -1,11 +1,10 @@
 //! `swimmer sweep submit`: a sweep put to the scheduler that is there.
 
-use std::fmt;
 use std::path::PathBuf;
 use std::process::Command;
 
 use clap::Subcommand;
-use serde::Serialize;
+use operations::sweep::SubmitOutput;
 use sweep::{Plan, Slurm, time_limit};
 use swimmer_files::{FileError, write_atomically};
 
@@ -47,19 +46,6 @@ pub(crate) struct SlurmJob {
     /// Hand the script to sbatch
     #[arg(long)]
     submit: bool,
-}
-
-#[derive(Debug, Serialize)]
-struct SubmitOutput {
-    tasks: u64,
-    done: u64,
-    failed: u64,
-    shards: u64,
-    cores: u64,
-    minutes: u64,
-    script: PathBuf,
-    /// Number of the job array; null if it was not submitted.
-    job: Option<String>,
 }
 
 impl Submit {
@@ -119,7 +105,7 @@ impl SlurmJob {
         } else {
             None
         };
-        output.print(&SubmitOutput {
+        let submitted = SubmitOutput {
             tasks: status.tasks,
             done: status.done,
             failed: status.failed,
@@ -128,7 +114,8 @@ impl SlurmJob {
             minutes,
             script,
             job,
-        });
+        };
+        output.rendered(&submitted, &rows(&submitted));
         Ok(())
     }
 }
@@ -156,22 +143,24 @@ fn submitted(script: &PathBuf) -> Outcome<String> {
     Ok(said.trim().split(';').next().unwrap_or_default().to_owned())
 }
 
-impl fmt::Display for SubmitOutput {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut rows = Rows::default();
-        rows.row("script", shown(&self.script))
-            .row(
-                "array",
-                format!(
-                    "{} tasks of {} cores, {} min each",
-                    self.shards, self.cores, self.minutes
-                ),
-            )
-            .row("designs", format!("{} of {} done", self.done, self.tasks));
-        match &self.job {
-            Some(job) => rows.row("submitted as", job),
-            None => rows.row("next", format!("sbatch {}", shown(&self.script))),
-        };
-        write!(f, "{rows}")
-    }
+/// Output as text.
+fn rows(output: &SubmitOutput) -> Rows {
+    let mut rows = Rows::default();
+    rows.row("script", shown(&output.script))
+        .row(
+            "array",
+            format!(
+                "{} tasks of {} cores, {} min each",
+                output.shards, output.cores, output.minutes
+            ),
+        )
+        .row(
+            "designs",
+            format!("{} of {} done", output.done, output.tasks),
+        );
+    match &output.job {
+        Some(job) => rows.row("submitted as", job),
+        None => rows.row("next", format!("sbatch {}", shown(&output.script))),
+    };
+    rows
 }

@@ -15,7 +15,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use operations::{Context, GaitSource, Subject, SwimmerSource};
-use operations::{atlas, best_waveform, catalogue, certify, height_map, optimize, plan, simulate};
+use operations::{
+    atlas, best_waveform, catalogue, certify, height_map, optimize, plan, simulate, sweep,
+};
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, SchemaGenerator};
 use serde_json::Value;
@@ -32,8 +34,14 @@ struct Document {
     name: String,
 }
 
-/// Commands whose documents have no schema.
-const WITHOUT_SCHEMA: [&str; 5] = ["paper", "demo", "sweep", "man", "robot"];
+/// Commands whose documents have no schema:
+///
+/// - `robot` prints counters, settings and states of `link-protocol`, `gait-player` and `host-link`, which have no schemas because they also
+///   run on the robot; their documents are assembled in the command.
+/// - `demo` prints figures of its own round next to the document of `calibrate`, and its type belongs to the command.
+/// - `man` lists the files that it wrote.
+/// - `experiment`, of which no document is kept, assembles its documents in the command from the types of the crate `experiment`.
+const WITHOUT_SCHEMA: [&str; 3] = ["demo", "man", "robot"];
 
 /// All documents, and the schemas of their types.
 fn contracts() -> (Vec<Document>, Schemas) {
@@ -60,6 +68,13 @@ fn contracts() -> (Vec<Document>, Schemas) {
         of::<certify::Output>(&mut generator, "certify", "certify"),
         of::<height_map::Output>(&mut generator, "height-map", "height-map"),
         of::<plan::Output>(&mut generator, "plan", "plan"),
+        of::<sweep::PlanOutput>(&mut generator, "sweep plan", "sweep plan"),
+        of::<sweep::RunOutput>(&mut generator, "sweep run", "sweep run"),
+        of::<::sweep::Status>(&mut generator, "sweep status", "sweep status"),
+        of::<sweep::MergeOutput>(&mut generator, "sweep merge", "sweep merge"),
+        of::<sweep::MapOutput>(&mut generator, "sweep map", "sweep map"),
+        of::<::sweep::Map>(&mut generator, "FILE.json of sweep map --export", ""),
+        of::<sweep::SubmitOutput>(&mut generator, "sweep submit slurm", "sweep submit"),
         of::<operations::calibrate::Output>(&mut generator, "calibrate CAMPAIGN.toml", "calibrate"),
         of::<operations::calibrate::RunsOutput>(
             &mut generator,
@@ -75,6 +90,7 @@ fn contracts() -> (Vec<Document>, Schemas) {
         of::<catalogue::SwimmersOutput>(&mut generator, "swimmers", "swimmers"),
         of::<catalogue::SwimmerOutput>(&mut generator, "swimmers NAME", "swimmers"),
         of::<catalogue::GaitsOutput>(&mut generator, "gaits", "gaits"),
+        of::<validation::Output>(&mut generator, "paper", "paper"),
     ];
     // Parts that the lab page names.
     generator.subschema_for::<optimize::Output>();
