@@ -2,8 +2,9 @@
 
 use forecast::playlist::{PlaylistTable, steady_cycle, timed};
 use forecast::{Servos, Tank};
-use gait_player::GaitTable;
 use gait_player::playback::PlayedPoint;
+use gait_player::ramp::{NEUTRAL, Ramp};
+use gait_player::{GaitTable, Limits, TICK_US};
 use nalgebra::Vector2;
 use swimmer_model::{Model, Pose};
 
@@ -54,6 +55,60 @@ impl Course {
         servos: &Servos,
     ) -> Self {
         Self::of_points(model, steady_cycle(table, period_us, servos))
+    }
+
+    /// The first cycles of a play, one by one. The robot sets its servos 50 times a second: at a period that is no whole number of
+    /// these ticks each cycle begins at another share of a tick, with other joint angles.
+    pub fn of_first_cycles(
+        model: &Model<f64>,
+        table: &GaitTable,
+        period_us: u32,
+        servos: &Servos,
+        cycles: u32,
+    ) -> Vec<Self> {
+        #[allow(clippy::cast_possible_truncation)] // a rate as the robot stores it
+        let limits = Limits {
+            max_rate: servos.file.max_rate as f32,
+            ..Limits::ROBOT
+        };
+        let start = Ramp::soft(NEUTRAL, table.knot_angles(0), false, &limits);
+        let start_s = f64::from(start.duration_us().div_ceil(TICK_US) * TICK_US) * 1e-6;
+        let play = PlaylistTable {
+            table: table.clone(),
+            cycles,
+            period_us,
+            step: 0,
+        };
+        let points = timed(std::slice::from_ref(&play), servos, [0.0; 2]);
+        let whole = Self {
+            points: points
+                .into_iter()
+                .map(|point| Point {
+                    time_s: point.time_s,
+                    shape: point.angles.into(),
+                    pose: Pose::identity(),
+                })
+                .collect(),
+        };
+        let period_s = f64::from(period_us) * 1e-6;
+        let cycle = |number: u32| {
+            let from = start_s + f64::from(number) * period_s;
+            whole.section(model, from, from + period_s)
+        };
+        (0..cycles).map(cycle).collect()
+    }
+
+    /// The course from one time to another \[s\], in the frame of the middle link at its start.
+    fn section(&self, model: &Model<f64>, from_s: f64, to_s: f64) -> Self {
+        let first = self.points.partition_point(|point| point.time_s <= from_s);
+        let last = self.points.partition_point(|point| point.time_s < to_s);
+        let inner = self.points.get(first..last).unwrap_or_default();
+        let inner = inner
+            .iter()
+            .map(|point| (point.time_s - from_s, point.shape));
+        let start = std::iter::once((0.0, self.shape_at(from_s)));
+        let end = std::iter::once((to_s - from_s, self.shape_at(to_s)));
+        Self::of_shapes(model, start.chain(inner).chain(end))
     }
 
     fn of_points(model: &Model<f64>, points: Vec<PlayedPoint>) -> Self {

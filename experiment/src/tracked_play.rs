@@ -2,7 +2,8 @@
 
 use std::collections::VecDeque;
 
-use forecast::Tank;
+use forecast::{Servos, Tank};
+use gait_player::{GaitTable, TICK_US};
 use nalgebra::Vector2;
 use swimmer_model::Model;
 
@@ -15,6 +16,9 @@ const POSES_OUTSIDE: u32 = 3;
 /// A cycle is evaluated when the poses are past its end by this much \[s\]: some arrive out of order.
 const LATE_POSES_S: f64 = 0.05;
 
+/// Cycles of a play that are predicted one by one; later ones count as the second.
+const MOST_COURSES: u32 = 64;
+
 /// Gait as the robot plays it.
 #[derive(Debug, Clone)]
 pub struct GaitOnRobot {
@@ -22,6 +26,68 @@ pub struct GaitOnRobot {
     pub course: Course,
     /// Duration of a cycle \[s\].
     pub period_s: f64,
+    /// Predicted courses of the first cycles, until they repeat.
+    courses: Vec<Course>,
+}
+
+impl GaitOnRobot {
+    /// A gait whose cycles are all alike.
+    pub fn steady(course: Course, period_s: f64) -> Self {
+        Self {
+            course,
+            period_s,
+            courses: Vec::new(),
+        }
+    }
+
+    /// A table that is played for some cycles. At a period that is no whole number of the robot's ticks each cycle begins at another
+    /// share of a tick, with other joint angles: at the servos' full rate this changes the net motion of a cycle by up to a percent.
+    pub fn new(
+        model: &Model<f64>,
+        table: &GaitTable,
+        period_us: u32,
+        servos: &Servos,
+        cycles: u32,
+    ) -> Self {
+        // Cycle n begins at the same share of a tick as cycle n + `different`.
+        let different = TICK_US / common_divisor(period_us, TICK_US);
+        let first = cycles.min(different + 1).min(MOST_COURSES);
+        Self {
+            courses: Course::of_first_cycles(model, table, period_us, servos, first),
+            course: Course::of_cycle(model, table, period_us, servos),
+            period_s: f64::from(period_us) * 1e-6,
+        }
+    }
+
+    /// Predicted course of a cycle, from 0.
+    pub fn course_of(&self, cycle: u32) -> &Course {
+        let repeating = u32::try_from(self.courses.len().saturating_sub(1)).unwrap_or(0);
+        let like = match cycle {
+            0 => 0,
+            _ if repeating == 0 => return &self.course,
+            _ => 1 + (cycle - 1) % repeating,
+        };
+        self.courses.get(like as usize).unwrap_or(&self.course)
+    }
+
+    /// Mean net motion of some cycles, each in the frame of the middle link at its start.
+    pub fn mean_motion(&self, cycles: std::ops::Range<u32>) -> swimmer_model::Pose<f64> {
+        let count = f64::from(cycles.end.saturating_sub(cycles.start).max(1));
+        let nets = cycles.map(|cycle| self.course_of(cycle).net());
+        let [x, y, turn] = nets.fold([0.0; 3], |[x, y, turn], net| {
+            [x + net.x, y + net.y, turn + net.theta]
+        });
+        swimmer_model::Pose::new(x / count, y / count, turn / count)
+    }
+}
+
+/// Greatest common divisor; `two` is not 0.
+fn common_divisor(one: u32, two: u32) -> u32 {
+    let (mut one, mut two) = (one, two);
+    while one != 0 {
+        (one, two) = (two % one, one);
+    }
+    two
 }
 
 /// Tank and the distance that is kept from its walls \[m\].
@@ -87,7 +153,7 @@ impl TrackedPlay {
         for (name, other) in others {
             monitor.know(name, other.clone());
         }
-        monitor.begin(gait.course.clone(), began_s);
+        monitor.begin(gait.course_of(0).clone(), began_s);
         Self {
             model: *model,
             walls,
@@ -205,7 +271,8 @@ impl TrackedPlay {
         }
         if self.ended < self.cycles {
             let began = self.cycle_began_s();
-            self.monitor.begin(self.gait.course.clone(), began);
+            let course = self.gait.course_of(self.ended).clone();
+            self.monitor.begin(course, began);
         }
     }
 }

@@ -10,6 +10,7 @@ use forecast::{Kind, Member};
 use nalgebra::Vector2;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use swimmer_model::Gait as _;
 
 const WALLS: TankWalls = TankWalls {
     tank: TANK,
@@ -287,6 +288,111 @@ fn a_robot_without_calibration_is_named() {
     }
 }
 
+/// Reports of a circle that is played on and on, as an experiment tracks it.
+fn circle_reports(truth: Truth, degrees: f64, period_s: f64, seed: u64) -> Vec<CycleReport> {
+    const CYCLES: u32 = 3;
+    let circle = |degrees: f64| swimmer_files::AnyGait::circle(degrees.to_radians());
+    let on_robot = |degrees: f64| {
+        let table = forecast::table(&circle(degrees), 512).unwrap();
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // some seconds
+        let period_us = (period_s * 1e6) as u32;
+        GaitOnRobot::new(&model(), &table, period_us, &servos(), CYCLES)
+    };
+    let member = Member {
+        kind: Kind::Forward,
+        backwards: false,
+        scale: 1.0,
+    };
+    let family = forecast::Family {
+        gaits: [degrees; 3].map(|degrees| (circle(degrees), period_s)),
+        mirrored: false,
+    };
+    let step = forecast::Step {
+        cycles: CYCLES,
+        period: period_s,
+        ..planner().step(member, CYCLES)
+    };
+    let played = member.of(&family);
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let heading = rng.random_range(-3.0..3.0);
+    let mut lab = Lab::new(truth, swimmer_model::Pose::new(0.0, 0.0, heading), seed);
+    lab.is_ramped_to(played.at(0.0).phi);
+    lab.start(played, step);
+    let others =
+        [50.0, 60.0, 80.0, 90.0].map(|degrees| (format!("{degrees}deg"), on_robot(degrees)));
+    let mut play: Option<TrackedPlay> = None;
+    while play.as_ref().is_none_or(|play| !play.is_whole()) {
+        lab.advance();
+        for notice in std::mem::take(&mut lab.notices) {
+            if let Notice::Began(time) = notice {
+                let others = others
+                    .iter()
+                    .map(|(name, other)| (name.as_str(), &other.course));
+                let began_s = time + rng.random_range(-0.01..0.01);
+                let gait = on_robot(degrees);
+                play = Some(TrackedPlay::new(
+                    &model(),
+                    Some(WALLS),
+                    gait,
+                    others,
+                    began_s,
+                    CYCLES,
+                ));
+            }
+        }
+        let arrived = lab.arrived();
+        if let Some(play) = &mut play {
+            for pose in &arrived {
+                play.pose(pose);
+            }
+            while let Some(evaluation) = play.take_evaluation() {
+                play.evaluated(evaluation.run());
+            }
+            assert!(lab.now < 100.0);
+        }
+    }
+    play.unwrap().reports().to_vec()
+}
+
+/// A circle of a robot that was never calibrated is named within three cycles; a calibrated one raises no alarm.
+#[test]
+fn a_circle_without_calibration_is_named() {
+    let mut failures = Vec::new();
+    for period_s in [6.0, 12.0] {
+        for (chi_factor, radius_factor) in [(1.06, 0.95), (0.94, 1.05), (1.0, 1.0)] {
+            let (mut named, mut gains, mut likeness) = (0, Vec::new(), Vec::new());
+            for seed in 0..10 {
+                let truth = Truth {
+                    chi_factor,
+                    radius_factor,
+                    ..calibrated(seed)
+                };
+                let reports = circle_reports(truth, 70.0, period_s, seed);
+                gains.extend(reports.iter().filter_map(|report| Some(report.gain?[0])));
+                let departure = reports.into_iter().find_map(|report| report.departure);
+                named += u32::from(departure.is_some());
+                likeness.extend(departure.map(|departure| departure.likeness));
+            }
+            let mean = gains.iter().sum::<f64>() / gains.len() as f64;
+            println!(
+                "circle of 70°, {period_s} s, χ × {chi_factor}, r_s × {radius_factor}: named within three cycles in {named} of 10, mean gain \
+                 {mean:.3}, {likeness:?}"
+            );
+            let is_calibrated = (chi_factor - 1.0_f64).abs() < 1e-9;
+            let enough = if is_calibrated {
+                named == 0
+            } else {
+                named == 10
+            };
+            let is_correct = likeness.iter().all(Likeness::is_correctable);
+            if !enough || !is_correct {
+                failures.push((period_s, chi_factor, named));
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{failures:?}");
+}
+
 /// Net motion of a full cycle with another drag over the predicted one: of its position, or of its turn.
 fn share_of_motion(kind: Kind, chi_factor: f64, radius_factor: f64) -> f64 {
     let mut swimmer = *model().swimmer();
@@ -336,10 +442,7 @@ fn a_slow_evaluation_delays_no_stop() {
     let circle = swimmer_files::AnyGait::circle(1.2);
     let table = forecast::table(&circle, 512).unwrap();
     let course = Course::of_cycle(&model(), &table, 6_000_000, &servos());
-    let gait = GaitOnRobot {
-        course: course.clone(),
-        period_s: 6.0,
-    };
+    let gait = GaitOnRobot::steady(course.clone(), 6.0);
     let others = std::iter::empty();
     let mut play = TrackedPlay::new(&model(), Some(WALLS), gait.clone(), others, 10.0, 3);
     // A robot whose joints do not move, first in the middle of the tank, then at a wall.
@@ -377,4 +480,33 @@ fn a_slow_evaluation_delays_no_stop() {
     play.evaluated(second);
     let departure = play.departure().unwrap();
     assert!(departure.since == 0 && play.is_evaluated(), "{departure:?}");
+}
+
+/// 2.343 s are 117.15 ticks: after 20 cycles a cycle begins with a tick again.
+#[test]
+fn courses_repeat_with_the_ticks() {
+    let model = model();
+    let table = forecast::table(&swimmer_files::AnyGait::circle(1.2), 512).unwrap();
+    let servos = servos();
+    let gait = |period_us, cycles| GaitOnRobot::new(&model, &table, period_us, &servos, cycles);
+    let uneven = gait(2_343_000, 50);
+    assert_eq!(uneven.course_of(1), uneven.course_of(21));
+    let later = Course::of_first_cycles(&model, &table, 2_343_000, &servos, 22);
+    let apart = later[21].net().position() - uneven.course_of(1).net().position();
+    assert!(apart.norm() < 1e-9, "{apart}");
+    assert_ne!(uneven.course_of(1), uneven.course_of(2));
+    // The same path by another part of the player.
+    let second = Course::of_cycle(&model, &table, 2_343_000, &servos);
+    let apart = uneven.course_of(1).net().position() - second.net().position();
+    assert!(apart.norm() < 1e-9, "{apart}");
+    assert_eq!(gait(2_343_000, 3).course_of(2), uneven.course_of(2));
+    let even = gait(2_400_000, 50);
+    let apart = even.course_of(40).net().position() - even.course.net().position();
+    assert!(apart.norm() < 1e-9, "{apart}");
+    // The joints of each cycle begin where those of the cycle before end.
+    for cycle in 1..25 {
+        let before = uneven.course_of(cycle - 1).last_shape();
+        let apart = (uneven.course_of(cycle).shape_at(0.0) - before).norm();
+        assert!(apart < 1e-9, "cycle {cycle}: {apart}");
+    }
 }

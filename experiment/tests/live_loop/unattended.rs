@@ -45,10 +45,7 @@ fn circle(degrees: f64) -> (PlannedGait, GaitOnRobot) {
         neighbour_of: None,
         size: 1.0,
     };
-    let on_robot = GaitOnRobot {
-        course,
-        period_s: PERIOD_S,
-    };
+    let on_robot = GaitOnRobot::steady(course, PERIOD_S);
     (planned, on_robot)
 }
 

@@ -158,6 +158,10 @@ pub(crate) struct Lab {
     pub(crate) notices: Vec<Notice>,
     pub(crate) touched_wall: bool,
     pub(crate) moved_last: f64,
+    /// Share of a cycle at each end in which the joints stand.
+    stand: f64,
+    /// Shape before a play.
+    rest: [f64; 2],
 }
 
 impl Lab {
@@ -180,7 +184,18 @@ impl Lab {
             notices: Vec::new(),
             touched_wall: false,
             moved_last: 0.0,
+            stand: STAND,
+            rest: [0.0; 2],
         }
+    }
+
+    /// The joints are at the start of a gait that goes on and on, where a soft start has led them.
+    pub(crate) fn is_ramped_to(&mut self, start: Vector2<f64>) {
+        self.rest = start.into();
+        self.shafts = self.rest;
+        let gain = self.truth.gain;
+        self.joints = Vector2::new(gain[0] * start.x, gain[1] * start.y);
+        self.stand = 0.0;
     }
 
     pub(crate) fn start(&mut self, gait: Scaled, step: Step) {
@@ -213,7 +228,7 @@ impl Lab {
                     };
                     return self.command();
                 }
-                [0.0; 2]
+                self.rest
             }
             Motion::Play { gait, step, began } => {
                 // Set-points change 50 times a second.
@@ -227,7 +242,8 @@ impl Lab {
                     };
                     return self.command();
                 }
-                let moved = ((cycles.fract() - STAND) / (1.0 - 2.0 * STAND)).clamp(0.0, 1.0);
+                let stand = self.stand;
+                let moved = ((cycles.fract() - stand) / (1.0 - 2.0 * stand)).clamp(0.0, 1.0);
                 gait.at(if moved >= 1.0 { 0.0 } else { moved }).phi.into()
             }
             &Motion::Ramp { from, began } => {

@@ -3,7 +3,7 @@
 use std::ffi::OsString;
 use std::path::Path;
 
-use experiment::Course;
+use experiment::GaitOnRobot;
 use experiment::unattended::{
     GaitSource, LeftOut, Measure, PlannedGait, Spec, SpecGait, SpecPeriod,
 };
@@ -212,7 +212,8 @@ impl<'a> Maker<'a> {
         self.has_room(&curve, cycles)?;
         let table = table_of(&curve).map_err(|error| error.to_string())?;
         let period_us = played(period_s).period_us();
-        let net = Course::of_cycle(&self.model, &table, period_us, &self.servos).net();
+        let on_robot = GaitOnRobot::new(&self.model, &table, period_us, &self.servos, cycles);
+        let net = on_robot.mean_motion(self.spec.run_in..cycles);
         let path = format!("gaits/{}.gait", gait.name);
         gait.file
             .save(&self.draft.join(&path))

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use experiment::adaptive::{CampaignAdvice, Decision};
 use experiment::unattended::{Entry, Journal, Plan, Request, Run, RunEnding};
-use experiment::{Course, Event, GaitOnRobot};
+use experiment::{Event, GaitOnRobot};
 use forecast::{Planner, Played, PlaylistTable, Servos};
 use gait_player::GaitTable;
 use link_protocol::MAX_KNOTS;
@@ -289,10 +289,8 @@ fn gaits(
             knots: MAX_KNOTS,
         };
         let period_us = played.period_us();
-        let on_robot = GaitOnRobot {
-            course: Course::of_cycle(&model, &table, period_us, servos),
-            period_s: gait.period_s,
-        };
+        let cycles = folder.plan.run_in + gait.cycles;
+        let on_robot = GaitOnRobot::new(&model, &table, period_us, servos, cycles);
         courses.insert(gait.name.clone(), on_robot);
         playable.insert(gait.name.clone(), Playable { table, period_us });
     }

@@ -2,7 +2,7 @@
 
 use std::{fmt, iter};
 
-use experiment::{Course, Evaluated, Event, GaitOnRobot, Interruption, TankWalls, TrackedPlay};
+use experiment::{Evaluated, Event, GaitOnRobot, Interruption, TankWalls, TrackedPlay};
 use forecast::PlaylistTable;
 use serde::Serialize;
 
@@ -67,13 +67,11 @@ pub(super) fn play(
         period_us: microseconds(play.period),
         step: 0,
     };
-    let course = Course::of_cycle(bench.model(), &table.table, table.period_us, bench.servos());
+    let cycles = play.cycles.unwrap_or(u32::MAX);
+    let (model, servos) = (bench.model(), bench.servos());
     let mut monitored = Monitored {
-        gait: GaitOnRobot {
-            course,
-            period_s: play.period,
-        },
-        cycles: play.cycles.unwrap_or(u32::MAX),
+        gait: GaitOnRobot::new(model, &table.table, table.period_us, servos, cycles),
+        cycles,
         walls: play.room.tank.map(|tank| TankWalls {
             tank,
             margin_m: MARGIN_M,

@@ -190,16 +190,13 @@ impl Follower {
         let fit = self.overheard.clock();
         let reported_s = fit.map_or(now_s, |fit| fit.host_time(robot_s)).min(now_s);
         let began_s = reported_s - into_play_s(telemetry, play.period_us);
-        tracking.play_began(course.clone(), began_s);
+        tracking.play_began(course, began_s);
         let cycles = if play.cycles == 0 {
             u32::MAX
         } else {
             play.cycles
         };
-        let gait = GaitOnRobot {
-            course,
-            period_s: f64::from(play.period_us) / 1e6,
-        };
+        let gait = GaitOnRobot::new(&self.model, table, play.period_us, &servos, cycles);
         self.play = Some(TrackedPlay::new(
             &self.model,
             self.walls,
