@@ -5,14 +5,14 @@ use std::path::Path;
 
 use experiment::unattended::{Plan, Spec};
 use serde::Serialize;
-use swimmer_files::SwimmerFile;
+use swimmer_files::{ServoFile, SwimmerFile};
 
 use super::ExperimentPaths;
 use super::folder::{PLAN, SPEC, SWIMMER, read, write_plan};
 use super::gaits::{Maker, drive};
 use crate::failure::{Failure, Outcome};
 use crate::new_folder::NewFolder;
-use crate::output::Output;
+use crate::output::{Output, aside};
 use crate::quantity;
 
 /// Compute the gaits of an experiment and fix the order of its trials
@@ -51,7 +51,16 @@ pub(crate) fn plan(paths: &ExperimentPaths) -> Outcome<PlanOutput> {
     let text = read(&paths.spec)?;
     let spec = Spec::parse(&text, &paths.spec)?;
     let home = paths.spec.parent().unwrap_or_else(|| Path::new(""));
-    let swimmer = SwimmerFile::find_from(&spec.swimmer, home)?;
+    let mut swimmer = SwimmerFile::find_from(&spec.swimmer, home)?;
+    if swimmer.servo.is_none() {
+        // Plan, report, campaign and fit then start from the same servos: a fit without them takes the servos as ideal.
+        let servo = swimmer.servo.insert(ServoFile::default());
+        aside(&format!(
+            "note: {} names no [servo]; the servos of the twin are assumed, with a dead band of {}. `swimmer robot setup` measures yours.",
+            spec.swimmer,
+            quantity::angle(servo.dead_band)
+        ));
+    }
     let folder = NewFolder::start(&paths.folder())?;
     let draft = folder.draft().to_path_buf();
     for inner in ["gaits", "tracks", "logs"] {
