@@ -22,7 +22,6 @@ use swimmer_files::SwimmerFile;
 
 use self::follower::Follower;
 use super::evaluator::Evaluator;
-use super::preflight::tank;
 use super::tank_cameras::TankCameras;
 use super::tracked_report::MonitorLine;
 use super::tracking::{Tracking, Visible};
@@ -55,7 +54,7 @@ pub(crate) struct LinkMonitorOptions {
     )]
     swimmer: String,
     /// Stop the robot 10 mm from a wall of this tank, whose centre is the origin of the cameras: length x width, m
-    #[arg(long, value_name = "LENGTHxWIDTH", value_parser = tank, requires = "track")]
+    #[arg(long, value_name = "LENGTHxWIDTH", requires = "track")]
     tank: Option<Tank>,
     #[command(flatten)]
     visible: Visible,
