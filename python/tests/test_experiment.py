@@ -44,7 +44,8 @@ def spec(tmp_path_factory: pytest.TempPathFactory, robot: sw.Swimmer, straight: 
 
 @pytest.fixture(scope="module")
 def planned(spec: Path) -> sw.experiment.Plan:
-    return sw.experiment.plan(spec)
+    with pytest.warns(sw.Doubt, match="the servos of the twin are assumed"):
+        return sw.experiment.plan(spec)
 
 
 def test_a_plan_holds_gaits(planned: sw.experiment.Plan, robot: sw.Swimmer) -> None:
